@@ -91,6 +91,7 @@ void Replay::keep(const CarmenScan& scan, std::vector<std::uint32_t>& readings_m
   const algo::Pose2 mount_R = earlier == scans_.end() ? mount_of(scan) : earlier->mount_R;
   scans_.push_back({.laser = scan.laser,
                     .stamp = scan.stamp,
+                    .recorded = scan.stamp,
                     .pose_W = scan.robot_W,
                     .mount_R = mount_R,
                     .angle_min = scan.angle_min,

@@ -44,13 +44,16 @@ class Replay final : public algo::Robot {
   void stop() noexcept override {}
 
   std::size_t size() const { return scans_.size(); }
+  /// [s] Of the current scan, on the recording's clock; 0 if the log has none.
+  double recorded_stamp() const { return scans_[current_].recorded; }
   CarmenUnit unit() const { return unit_; }
   const SkippedLines& skipped() const { return skipped_; }
 
  private:
   struct Scan {
     CarmenLaser laser = CarmenLaser::Front;
-    double stamp = 0;  // [s] run clock
+    double stamp = 0;     // [s] run clock
+    double recorded = 0;  // [s] the recording's clock
     algo::Pose2 pose_W{};
     algo::Pose2 mount_R{};                      // constant for a laser: that of its first scan
     double angle_min = 0, angle_increment = 0;  // [rad]

@@ -2,6 +2,7 @@
 #include "algo/mapping/occupancy_map.hpp"
 
 #include <limits>
+#include <tuple>
 
 namespace algo {
 namespace {
@@ -11,31 +12,37 @@ constexpr std::uint16_t kFresh = 64;  // hits after which a cell's mean becomes 
 
 }  // namespace
 
-OccupancyMap::OccupancyMap(double cell, int side, const Vec2& centre_W) : cells_(cell, side) {
-  cells_.centre_on(centre_W);
+OccupancyMap::Tally& OccupancyMap::open(const Index& cell) {
+  const Index tile = tile_of(cell);
+  if (last_tile_ == nullptr || !(tile == last_)) {
+    std::unique_ptr<Tile>& place_of = tiles_[key(tile)];
+    if (!place_of) place_of = std::make_unique<Tile>();
+    last_ = tile;
+    last_tile_ = place_of.get();
+  }
+  return (*last_tile_)[place(cell)];
 }
 
 /// Counts a pass for all cells between the ends, except the cell in which the beam ends.
 void OccupancyMap::pass(const Vec2& from_W, const Vec2& to_W) {
-  const Cell end = cells_.cell_of(to_W);
+  const Index end = cell_of(to_W);
   const Vec2 way = to_W - from_W;
-  const int steps = static_cast<int>(std::ceil(way.norm() / cells_.edge()));
-  Cell before = end;
+  const int steps = static_cast<int>(std::ceil(way.norm() / edge_));
+  Index before = end;
   for (int k = 0; k < steps; ++k) {
-    const Cell at = cells_.cell_of(from_W + way * (static_cast<double>(k) / steps));
-    if (at == before || at == end || !cells_.covers(at)) continue;
+    const Index at = cell_of(from_W + way * (static_cast<double>(k) / steps));
+    if (at == before || at == end) continue;
     before = at;
-    Tally& tally = cells_[at];
+    Tally& tally = open(at);
     if (tally.passes < kMost) ++tally.passes;
   }
 }
 
 void OccupancyMap::hit(const Vec2& point_W) {
-  const Cell at = cells_.cell_of(point_W);
-  if (!cells_.covers(at)) return;
-  Tally& tally = cells_[at];
+  const Index at = cell_of(point_W);
+  Tally& tally = open(at);
   if (tally.hits < kMost) ++tally.hits;
-  const Vec2 off = point_W - cells_.centre(at);
+  const Vec2 off = point_W - centre(at);
   const float share = 1.0F / static_cast<float>(std::min(tally.hits, kFresh));
   tally.x += share * (static_cast<float>(off.x()) - tally.x);
   tally.y += share * (static_cast<float>(off.y()) - tally.y);
@@ -50,6 +57,22 @@ void OccupancyMap::insert(const LaserScan& scan, const Pose2& sensor_W, double r
     pass(from_W, to_W);
     if (scan.ranges[i] <= reach) hit(to_W);
   }
+}
+
+OccupancyMap::Tally OccupancyMap::at(const Index& cell) const {
+  const Tile* tile = find(tile_of(cell));
+  return tile == nullptr ? Tally{} : (*tile)[place(cell)];
+}
+
+std::vector<OccupancyMap::Index> OccupancyMap::tiles() const {
+  std::vector<Index> found;
+  found.reserve(tiles_.size());
+  for (const auto& [at, tile] : tiles_) {
+    found.push_back({static_cast<int>(static_cast<std::uint32_t>(at)),
+                     static_cast<int>(static_cast<std::uint32_t>(at >> 32U))});
+  }
+  std::ranges::sort(found, {}, [](const Index& t) { return std::tuple(t.j, t.i); });
+  return found;
 }
 
 }  // namespace algo

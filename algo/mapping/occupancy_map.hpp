@@ -1,23 +1,28 @@
-// algo/mapping/occupancy_map.hpp: an occupancy map of all scans of a run. Each cell counts the
-// beams that ended in it and that passed through it, and averages its returns.
+// algo/mapping/occupancy_map.hpp: an occupancy map without limits. Each cell counts the beams that
+// ended in it and that passed through it, and averages its returns.
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <vector>
 
 #include "algo/laser_scan.hpp"
-#include "algo/rolling_grid.hpp"
 #include "algo/types.hpp"
 
 namespace algo {
 
-/// A square of W that forgets nothing, so that a returning robot finds the walls that it saw first.
-/// Like the certainty grid's rolling grid, but fixed.
+/// Square tiles of cells, made when a beam first enters them: memory grows with the area seen.
 ///
 /// A cell's occupancy is hits / (hits + passes): of the beams that reached it, the share that ended
-/// there (counting model; Haehnel, Burgard, Thrun 2003). Allocates in the constructor only.
+/// there (counting model; Haehnel, Burgard, Thrun 2003).
 class OccupancyMap {
  public:
+  static constexpr int kTileSide = 64;  // [cells]
+
   struct Tally {
     float x = 0, y = 0;        // [m] mean of the hits, from the cell's centre
     std::uint16_t hits = 0;    // beams that ended here
@@ -27,9 +32,14 @@ class OccupancyMap {
     /// things that left.
     bool occupied() const { return hits > 0 && 4 * hits >= passes; }
   };
+  /// Cell (i, j) spans [i edge, (i + 1) edge) x [j edge, (j + 1) edge) of W; likewise a tile.
+  struct Index {
+    int i = 0;
+    int j = 0;
+    bool operator==(const Index&) const = default;
+  };
 
-  /// `side` cells of edge `cell` [m] in x and in y about `centre_W`; ignores everything outside.
-  OccupancyMap(double cell, int side, const Vec2& centre_W);
+  explicit OccupancyMap(double cell) : edge_(cell) {}
 
   /// Enters the Ok beams of `scan` up to `reach` [m], taken by a scanner at `sensor_W`.
   void insert(const LaserScan& scan, const Pose2& sensor_W, double reach);
@@ -38,40 +48,83 @@ class OccupancyMap {
   /// `p_W`, with the mean of its hits.
   template <typename See>
   void each_near(const Vec2& p_W, double reach, See&& see) const {
-    const Cell low = clamped(cells_.cell_of(p_W - Vec2(reach, reach)));
-    const Cell high = clamped(cells_.cell_of(p_W + Vec2(reach, reach)));
-    for (int j = low.j; j <= high.j; ++j) {
-      for (int i = low.i; i <= high.i; ++i) {
-        const Tally& tally = cells_[{i, j}];
-        if (tally.occupied()) see(mean_W({i, j}, tally));
+    const Index low = cell_of(p_W - Vec2(reach, reach));
+    const Index high = cell_of(p_W + Vec2(reach, reach));
+    const Index first = tile_of(low);
+    const Index last = tile_of(high);
+    for (int tj = first.j; tj <= last.j; ++tj) {
+      for (int ti = first.i; ti <= last.i; ++ti) {
+        const Tile* tile = find({ti, tj});
+        if (tile == nullptr) continue;
+        const Index from{std::max(low.i, ti * kTileSide), std::max(low.j, tj * kTileSide)};
+        const Index to{std::min(high.i, ti * kTileSide + kTileSide - 1),
+                       std::min(high.j, tj * kTileSide + kTileSide - 1)};
+        for (int j = from.j; j <= to.j; ++j) {
+          for (int i = from.i; i <= to.i; ++i) {
+            const Tally& tally = (*tile)[place({i, j})];
+            if (tally.occupied()) see(mean_W({i, j}, tally));
+          }
+        }
       }
     }
   }
 
-  double cell_edge() const { return cells_.edge(); }
-  int side() const { return cells_.side(); }
-  /// [m] The outer corner of the cell of column 0 and row 0.
-  Vec2 corner_W() const {
-    return {cells_.first().i * cells_.edge(), cells_.first().j * cells_.edge()};
-  }
-  /// Columns and rows count from that corner.
-  const Tally& at(int column, int row) const {
-    return cells_[{cells_.first().i + column, cells_.first().j + row}];
+  /// Calls `see(cell, tally)` for each cell of each tile, in the order of tiles().
+  template <typename See>
+  void each_cell(See&& see) const {
+    for (const Index& at : tiles()) {
+      const Tile& tile = *find(at);
+      for (int j = 0; j < kTileSide; ++j) {
+        for (int i = 0; i < kTileSide; ++i) {
+          const Index cell{at.i * kTileSide + i, at.j * kTileSide + j};
+          see(cell, tile[place(cell)]);
+        }
+      }
+    }
   }
 
+  double cell_edge() const { return edge_; }
+  /// All tiles, by row and column: the same for the same scans.
+  std::vector<Index> tiles() const;
+  /// [bytes] of the tiles.
+  std::size_t bytes() const { return tiles_.size() * sizeof(Tile); }
+  Index cell_of(const Vec2& p_W) const { return {index(p_W.x()), index(p_W.y())}; }
+  Vec2 centre(const Index& c) const { return {(c.i + 0.5) * edge_, (c.j + 0.5) * edge_}; }
+  Vec2 mean_W(const Index& at, const Tally& tally) const {
+    return centre(at) + Vec2(static_cast<double>(tally.x), static_cast<double>(tally.y));
+  }
+  /// The cell's counts; none for a cell that no beam came near.
+  Tally at(const Index& cell) const;
+
  private:
-  Vec2 mean_W(Cell at, const Tally& tally) const {
-    return cells_.centre(at) + Vec2(static_cast<double>(tally.x), static_cast<double>(tally.y));
+  using Tile = std::array<Tally, static_cast<std::size_t>(kTileSide* kTileSide)>;
+
+  int index(double x) const {
+    constexpr double kFarthest = 1e9;  // fits an int, with room for a window about it
+    return static_cast<int>(std::clamp(std::floor(x / edge_), -kFarthest, kFarthest));
   }
-  Cell clamped(Cell at) const {
-    const Cell first = cells_.first();
-    const int last = cells_.side() - 1;
-    return {std::clamp(at.i, first.i, first.i + last), std::clamp(at.j, first.j, first.j + last)};
+  static int tile_index(int k) { return k >= 0 ? k / kTileSide : (k + 1) / kTileSide - 1; }
+  static Index tile_of(const Index& c) { return {tile_index(c.i), tile_index(c.j)}; }
+  static std::size_t place(const Index& c) {
+    constexpr auto kMask = static_cast<unsigned>(kTileSide - 1);
+    return (static_cast<unsigned>(c.j) & kMask) * kTileSide + (static_cast<unsigned>(c.i) & kMask);
   }
+  static std::uint64_t key(const Index& tile) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(tile.j)) << 32U |
+           static_cast<std::uint32_t>(tile.i);
+  }
+  const Tile* find(const Index& tile) const {
+    const auto found = tiles_.find(key(tile));
+    return found == tiles_.end() ? nullptr : found->second.get();
+  }
+  Tally& open(const Index& cell);
   void pass(const Vec2& from_W, const Vec2& to_W);
   void hit(const Vec2& point_W);
 
-  RollingGrid<Tally> cells_;
+  double edge_ = 0;  // [m]
+  std::unordered_map<std::uint64_t, std::unique_ptr<Tile>> tiles_{};
+  Index last_{};  // the tile opened last, and its place: beams stay in it for long
+  Tile* last_tile_ = nullptr;
 };
 
 }  // namespace algo

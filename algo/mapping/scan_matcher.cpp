@@ -45,12 +45,22 @@ void ScanMatcher::take(const LaserScan& scan, double reach) {
   }
 }
 
+void ScanMatcher::take(std::span<const Vec2> points_R) {
+  points_R_.assign(points_R.begin(), points_R.end());
+}
+
+Vec2 ScanMatcher::middle() const {
+  Vec2 sum(0, 0);
+  for (const Vec2& p_R : points_R_) sum += p_R;
+  return points_R_.empty() ? sum : (sum / static_cast<double>(points_R_.size())).eval();
+}
+
 ScanMatcher::Step::Step(const Pose2& pose_W, const Pose2& guess_W, const MatchPrior& prior)
     : pose_W_(pose_W) {
   const Eigen::Vector3d weight{prior.position, prior.position, prior.heading};
   const Eigen::Vector3d off{
       pose_W.x - guess_W.x, pose_W.y - guess_W.y, wrap_angle(pose_W.heading - guess_W.heading)};
-  h_.diagonal() = weight;
+  prior_.diagonal() = weight;
   g_ = weight.cwiseProduct(off);
 }
 
@@ -63,13 +73,13 @@ void ScanMatcher::Step::add(const Vec2& p_W, const Surface& surface, double scal
   const Eigen::Vector3d slope{surface.normal_W.x(),
                               surface.normal_W.y(),
                               surface.normal_W.y() * arm.x() - surface.normal_W.x() * arm.y()};
-  h_ += weight * slope * slope.transpose();
+  points_ += weight * slope * slope.transpose();
   g_ += weight * residual * slope;
   ++used_;
 }
 
 Pose2 ScanMatcher::Step::taken() const {
-  const Eigen::Vector3d step = h_.ldlt().solve(-g_);
+  const Eigen::Vector3d step = (prior_ + points_).ldlt().solve(-g_);
   if (!step.allFinite()) return pose_W_;
   return {pose_W_.x + step.x(), pose_W_.y + step.y(), wrap_angle(pose_W_.heading + step.z())};
 }

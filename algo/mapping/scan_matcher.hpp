@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -42,6 +43,9 @@ struct MatchPrior {
 struct ScanMatch {
   Pose2 pose_W{};    // of R
   double share = 0;  // of the scan's points that found a surface
+  /// Normal matrix of x, y and heading by the points alone [points, points m2], of W about the
+  /// pose.
+  Eigen::Matrix3d points = Eigen::Matrix3d::Zero();
 };
 
 /// Point-to-line ICP (Chen and Medioni 1992; Censi 2008), after a correlative search if the
@@ -59,6 +63,10 @@ class ScanMatcher {
   /// Takes the scan to match: its Ok beams up to `reach` [m], thinned to kSpacing apart, so that
   /// near walls do not outweigh far ones.
   void take(const LaserScan& scan, double reach);
+  /// Takes points of R instead of a scan.
+  void take(std::span<const Vec2> points_R);
+  /// Mean of the points taken, in R.
+  Vec2 middle() const;
 
   /// The pose near `guess_W` at which the scan fits the map best; `guess_W` itself if the map
   /// constrains nothing.
@@ -90,10 +98,12 @@ class ScanMatcher {
     /// The pose after one step; the same pose if the equations are singular.
     Pose2 taken() const;
     std::size_t used() const { return used_; }
+    const Eigen::Matrix3d& points() const { return points_; }
 
    private:
     Pose2 pose_W_{};
-    Eigen::Matrix3d h_ = Eigen::Matrix3d::Zero();
+    Eigen::Matrix3d prior_ = Eigen::Matrix3d::Zero();
+    Eigen::Matrix3d points_ = Eigen::Matrix3d::Zero();
     Eigen::Vector3d g_ = Eigen::Vector3d::Zero();
     std::size_t used_ = 0;
   };
@@ -117,7 +127,7 @@ class ScanMatcher {
 
 template <typename Map>
 ScanMatch ScanMatcher::match(const Map& map, const Pose2& guess_W, const MatchPrior& prior) const {
-  ScanMatch found{guess_W, 0};
+  ScanMatch found{.pose_W = guess_W};
   if (points_R_.size() < kFewest) return found;
   for (const double reach : kReaches) {
     for (int k = 0; k < kIterations; ++k) {
@@ -127,7 +137,8 @@ ScanMatch ScanMatcher::match(const Map& map, const Pose2& guess_W, const MatchPr
         if (const auto surface = surface_near(map, p_W, reach)) step.add(p_W, *surface, reach / 3);
       }
       found.share = static_cast<double>(step.used()) / static_cast<double>(points_R_.size());
-      if (step.used() < kFewest) return {guess_W, found.share};
+      if (step.used() < kFewest) return {.pose_W = guess_W, .share = found.share};
+      found.points = step.points();
       const Pose2 before = std::exchange(found.pose_W, step.taken());
       const double moved = (found.pose_W.position() - before.position()).norm();
       const double turned = std::abs(wrap_angle(found.pose_W.heading - before.heading));

@@ -1,11 +1,13 @@
 // server/cli/command_map.cpp: `tautline map`: maps a recorded log, with errors added to its
 // odometry and corrected by scan matching.
 #include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
 #include "server/cli/pool_options.hpp"
+#include "server/lab/mapping/long_building.hpp"
 #include "server/lab/mapping/map_study.hpp"
 #include "server/run/text_file.hpp"
 
@@ -15,23 +17,43 @@ namespace {
 struct MapCommand {
   std::vector<std::string> logs{};
   mapping::MapOptions options{};
+  std::string simulate{};
+  std::string relations{};
+  std::string poses{};
   std::string out{};
   std::string markdown{};
   bool as_json = false;
 };
 
 void write_picture(const mapping::MapStudy& study, const std::string& file) {
-  const mapping::MapRun& run = study.runs.front();
-  const auto& path_W = study.options.match ? run.matched_W : run.odometry_W;
   const std::string title =
       fmt::format("{}, {}", study.log.name, study.options.match ? "matched" : "by its odometry");
-  write_text(file, draw_map(study.log, path_W, title));
+  write_text(file, draw_map(study.log, first_path(study), title));
+}
+
+/// Options that speak of the path of one log.
+void refuse_several(const MapCommand& command) {
+  if (command.logs.size() == 1) return;
+  if (!command.out.empty()) {
+    throw std::runtime_error("--out takes the map of one log; --markdown those of several");
+  }
+  if (!command.relations.empty()) throw std::runtime_error("--relations belong to one log");
+  if (!command.poses.empty()) throw std::runtime_error("--poses takes the path of one log");
+}
+
+int simulate(const MapCommand& command) {
+  if (!command.logs.empty()) throw std::runtime_error("--simulate writes a log and takes none");
+  mapping::write_long_building(
+      command.simulate, command.options.first_seed, command.options.errors);
+  return kReached;
 }
 
 int execute(MapCommand command) {
-  if (!command.out.empty() && command.logs.size() > 1) {
-    throw std::runtime_error("--out takes the map of one log; --markdown those of several");
-  }
+  if (!command.simulate.empty()) return simulate(command);
+  if (command.logs.empty()) throw std::runtime_error("map needs a LOG, or --simulate FILE");
+  refuse_several(command);
+  const bool wants_path = !command.relations.empty() || !command.poses.empty();
+  command.options.match = command.options.match || wants_path;
   std::vector<mapping::MapStudy> studies;
   {
     ProgressLine progress;
@@ -39,10 +61,15 @@ int execute(MapCommand command) {
       command.options.progress = [&](std::size_t done, std::size_t all) {
         progress.show(fmt::format("{}: {} of {}", log, done, all));
       };
-      studies.push_back(study_map(mapping::read_recording(log), command.options));
+      mapping::Recording recording = mapping::read_recording(log);
+      if (!command.relations.empty()) {
+        command.options.relations = mapping::read_relations(command.relations, recording.stamps);
+      }
+      studies.push_back(study_map(std::move(recording), command.options));
     }
   }
   if (!command.out.empty()) write_picture(studies.front(), command.out);
+  if (!command.poses.empty()) write_poses(studies.front(), command.poses);
   if (!command.markdown.empty()) write_markdown(studies, command.markdown);
   if (command.as_json) {
     nlohmann::json out = nlohmann::json::array();
@@ -61,8 +88,25 @@ void add_map_command(Command app, int& status) {
   mapping::MapOptions& options = command->options;
   const Command map = app.add_subcommand(
       "map", "Map recorded CARMEN logs and print the error of the path against the log's own");
-  map.add_option("logs", command->logs, "The logs").required().type_name("LOG");
+  map.add_option("logs", command->logs, "The logs").type_name("LOG");
   map.add_flag("--match", options.match, "Correct each scan's pose by matching it to the map");
+  map.add_option("--simulate",
+                 command->simulate,
+                 "Instead of mapping, write the log of a simulated drive through a building of "
+                 "300 m with loops of 500 m to FILE, and its true relations beside it")
+      .check(refuse_folder)
+      .type_name("FILE");
+  map.add_option("--relations",
+                 command->relations,
+                 "Judge the matched path by surveyed relations: lines of t1 t2 dx dy dz roll pitch "
+                 "yaw")
+      .existing_file()
+      .type_name("FILE");
+  map.add_option("--poses",
+                 command->poses,
+                 "Write the matched path of the first seed: lines of stamp, x, y [m], theta [rad]")
+      .check(refuse_folder)
+      .type_name("FILE");
   map.add_option("--odometry-scale",
                  options.errors.odometry_scale,
                  "Add errors to the log's poses: of distances and of angles, each of random sign "

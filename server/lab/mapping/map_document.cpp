@@ -1,4 +1,5 @@
 // server/lab/mapping/map_document.cpp: the figures as tables: on the terminal and as Markdown.
+#include <numbers>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -12,6 +13,8 @@ namespace server::mapping {
 namespace {
 
 using experiment::Table;
+
+constexpr double kDegree = std::numbers::pi / 180;  // [rad]
 
 constexpr reproduce::Marks kMarks{"<!-- maps: made by the program, not by hand -->\n",
                                   "<!-- end of the maps -->\n"};
@@ -91,7 +94,13 @@ std::string sharpness_sentence(const MapStudy& study) {
 
 std::string time_sentence(const MapStudy& study) {
   if (!study.options.match) return "";
-  return fmt::format("Matching a scan and adding it to the map took {:.1f} ms.\n", scan_ms(study));
+  const MapRun& first = study.runs.front();
+  return fmt::format(
+      "Each scan took {:.1f} ms; {} loops were closed; the submaps and their graph take {:.1f} "
+      "MB.\n",
+      scan_ms(study),
+      first.loops,
+      1e-6 * static_cast<double>(first.map_bytes));
 }
 
 /// Adds one log to `section` and writes its pictures.
@@ -120,13 +129,27 @@ void add_log(const MapStudy& study, const std::filesystem::path& folder, std::st
           fmt::format("{}: by the matched scans, from the same odometry", name));
 }
 
+std::string relation_sentence(const MapStudy& study) {
+  if (study.options.relations.empty()) return "";
+  const RelationError& error = study.runs.front().relations;
+  return fmt::format(
+      "By {} surveyed relations, the matched path is off by {:.3f} +- {:.3f} m and {:.2f} +- "
+      "{:.2f} degrees.\n",
+      error.count,
+      error.translation_mean,
+      error.translation_sd,
+      error.rotation_mean / kDegree,
+      error.rotation_sd / kDegree);
+}
+
 }  // namespace
 
 std::string to_text(const MapStudy& study) {
-  return fmt::format("{}: {}\n{}{}{}",
+  return fmt::format("{}: {}\n{}{}{}{}",
                      study.log.name,
                      head_of(study),
                      to_text(run_table(study)),
+                     relation_sentence(study),
                      time_sentence(study),
                      sharpness_sentence(study));
 }

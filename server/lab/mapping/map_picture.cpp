@@ -33,35 +33,44 @@ Shade shade(const OccupancyMap::Tally& tally) {
 }
 
 Part known_part(const OccupancyMap& map) {
-  Part part{map.side(), 0, map.side(), 0};
-  for (int row = 0; row < map.side(); ++row) {
-    for (int column = 0; column < map.side(); ++column) {
-      if (shade(map.at(column, row)) == Shade::Unknown) continue;
-      part.left = std::min(part.left, column);
-      part.right = std::max(part.right, column + 1);
-      part.bottom = std::min(part.bottom, row);
-      part.top = std::max(part.top, row + 1);
-    }
-  }
-  if (part.columns() <= 0) return {0, map.side(), 0, map.side()};
-  return {std::max(0, part.left - kEdge),
-          std::min(map.side(), part.right + kEdge),
-          std::max(0, part.bottom - kEdge),
-          std::min(map.side(), part.top + kEdge)};
+  bool any = false;
+  Part part;
+  map.each_cell([&](const OccupancyMap::Index& at, const OccupancyMap::Tally& tally) {
+    if (shade(tally) == Shade::Unknown) return;
+    if (!any) part = {at.i, at.i + 1, at.j, at.j + 1};
+    any = true;
+    part.left = std::min(part.left, at.i);
+    part.right = std::max(part.right, at.i + 1);
+    part.bottom = std::min(part.bottom, at.j);
+    part.top = std::max(part.top, at.j + 1);
+  });
+  return {part.left - kEdge, part.right + kEdge, part.bottom - kEdge, part.top + kEdge};
 }
 
-/// The shade of a block of the map in the picture: wall if any cell is a wall, else free if any is
-/// free.
-Shade shade_of_block(const OccupancyMap& map, const Part& part, int block, int column, int row) {
-  Shade most = Shade::Unknown;
-  const int right = std::min(part.right, part.left + (column + 1) * block);
-  const int top = std::min(part.top, part.bottom + (row + 1) * block);
-  for (int y = part.bottom + row * block; y < top; ++y) {
-    for (int x = part.left + column * block; x < right; ++x) {
-      most = std::max(most, shade(map.at(x, y)));
-    }
-  }
-  return most;
+/// A picture of the map's cells, `block` of them along the edge of each of its own.
+struct Shades {
+  int block = 1;
+  int columns = 0, rows = 0;
+  std::vector<Shade> cells{};
+};
+
+/// A block is a wall if any of its cells is one, else free if any is free.
+Shades shades_of(const OccupancyMap& map, const Part& part) {
+  Shades out;
+  out.block = (std::max(part.columns(), part.rows()) + kMostColumns - 1) / kMostColumns;
+  out.columns = (part.columns() + out.block - 1) / out.block;
+  out.rows = (part.rows() + out.block - 1) / out.block;
+  out.cells.resize(static_cast<std::size_t>(out.columns) * static_cast<std::size_t>(out.rows));
+  map.each_cell([&](const OccupancyMap::Index& at, const OccupancyMap::Tally& tally) {
+    const Shade seen = shade(tally);
+    if (seen == Shade::Unknown) return;
+    const int column = (at.i - part.left) / out.block;
+    const int row = (at.j - part.bottom) / out.block;
+    Shade& cell = out.cells[static_cast<std::size_t>(row) * static_cast<std::size_t>(out.columns) +
+                            static_cast<std::size_t>(column)];
+    cell = std::max(cell, seen);
+  });
+  return out;
 }
 
 std::vector<CellRun> runs_of(const std::vector<Shade>& shades, int columns, Shade wanted) {
@@ -97,23 +106,14 @@ std::string draw_map(const Recording& log,
                      const std::string& title) {
   const OccupancyMap map = map_along(log, path_W);
   const Part part = known_part(map);
-  const int block = (part.columns() + kMostColumns - 1) / kMostColumns;
-  const int columns = (part.columns() + block - 1) / block;
-  const int rows = (part.rows() + block - 1) / block;
-  std::vector<Shade> shades;
-  shades.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) {
-      shades.push_back(shade_of_block(map, part, block, column, row));
-    }
-  }
-  const double cell = map.cell_edge() * block;
-  const Vec2 low_W = map.corner_W() + map.cell_edge() * Vec2(part.left, part.bottom);
-  const Vec2 high_W = low_W + cell * Vec2(columns, rows);
+  const Shades shades = shades_of(map, part);
+  const double cell = map.cell_edge() * shades.block;
+  const Vec2 low_W = map.cell_edge() * Vec2(part.left, part.bottom);
+  const Vec2 high_W = low_W + cell * Vec2(shades.columns, shades.rows);
   constexpr const char* kPath = "stroke=\"#3f88c5\" stroke-width=\"1\"";
   experiment::SvgPlot plot(low_W, high_W, kWidth, 1);
-  plot.cells(low_W, cell, runs_of(shades, columns, Shade::Free), "#e4e4df");
-  plot.cells(low_W, cell, runs_of(shades, columns, Shade::Wall), "#1c1c1c");
+  plot.cells(low_W, cell, runs_of(shades.cells, shades.columns, Shade::Free), "#e4e4df");
+  plot.cells(low_W, cell, runs_of(shades.cells, shades.columns, Shade::Wall), "#1c1c1c");
   plot.polyline(thinned(path_W), kPath);
   plot.legend(kPath, title);
   return plot.document(title);

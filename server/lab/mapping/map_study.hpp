@@ -9,9 +9,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "algo/mapping/mapper.hpp"
+#include "algo/mapping/occupancy_map.hpp"
 #include "server/experiment/pool.hpp"
 #include "server/lab/mapping/path_error.hpp"
+#include "server/lab/mapping/relations.hpp"
 #include "server/lab/mapping/sharpness.hpp"
 #include "sim/scenario.hpp"
 
@@ -22,14 +23,17 @@ struct Recording {
   std::string name{};  // of the file, without folder and ending
   std::vector<algo::LaserScan> scans{};
   std::vector<algo::Pose2> path_W{};  // one pose per scan
+  std::vector<double> stamps{};       // [s] as recorded, one per scan; 0 where the log has none
 };
 
-/// Throws std::runtime_error with a sentence if the file does not exist or holds no scan.
+/// Throws std::runtime_error with a sentence if the file does not exist, holds no scan, or has
+/// poses between which no robot drove.
 Recording read_recording(const std::filesystem::path& file);
 
 struct MapOptions {
   sim::DriveConfig errors{};  // uses odometry_slip, odometry_scale, odometry_noise
   bool match = false;
+  std::vector<Relation> relations{};  // of the log; judges the matched path
   std::uint64_t first_seed = 1;
   std::size_t seeds = 1;
   unsigned threads = 0;  // 0: one per core
@@ -44,7 +48,10 @@ struct MapRun {
   PathError odometry{};
   PathError matched{};
   std::vector<std::size_t> matched_cells{};  // see wall_cells(); likewise log_cells
-  double scan_time = 0;                      // [s] CPU, mean to match and add a scan
+  RelationError relations{};                 // of the matched path
+  double scan_time = 0;                      // [s] CPU per scan, for the whole path
+  std::size_t map_bytes = 0;                 // of the matcher's submaps and graph, at the end
+  std::size_t loops = 0;                     // closed
 };
 
 struct MapStudy {
@@ -59,6 +66,13 @@ MapStudy study_map(Recording log, const MapOptions& options);
 
 /// The map of the scans, taking `path_W` as true.
 algo::OccupancyMap map_along(const Recording& log, const std::vector<algo::Pose2>& path_W);
+
+/// The path of the first seed: the matched one if there is one.
+const std::vector<algo::Pose2>& first_path(const MapStudy& study);
+
+/// Writes first_path(): one line a scan with the log's stamp, x, y [m] and heading [rad]. Throws
+/// std::runtime_error.
+void write_poses(const MapStudy& study, const std::filesystem::path& file);
 
 nlohmann::json to_json(const MapStudy& study);
 std::string to_text(const MapStudy& study);

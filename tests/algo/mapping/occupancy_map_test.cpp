@@ -22,14 +22,12 @@ LaserScan beam(double range) {
   return scan;
 }
 
-/// Columns about the origin, which is in the middle: 20 are to the left of it.
-const OccupancyMap::Tally& ahead(const OccupancyMap& map, double x) {
-  const Vec2 off = (Vec2(x, 0.01) - map.corner_W()) / map.cell_edge();
-  return map.at(static_cast<int>(off.x()), static_cast<int>(off.y()));
+OccupancyMap::Tally ahead(const OccupancyMap& map, double x) {
+  return map.at(map.cell_of({x, 0.01}));
 }
 
 TEST(OccupancyMap, ABeamPassesThroughCellsAndHitsTheLast) {
-  OccupancyMap map(0.1, 41, {0, 0});
+  OccupancyMap map(0.1);
   map.insert(beam(1.02), {0.05, 0.01, 0}, 8);
   EXPECT_EQ(ahead(map, 1.05).hits, 1);
   EXPECT_EQ(ahead(map, 1.05).passes, 0);
@@ -41,14 +39,14 @@ TEST(OccupancyMap, ABeamPassesThroughCellsAndHitsTheLast) {
 }
 
 TEST(OccupancyMap, ReturnsBeyondReachClearTheWayOnly) {
-  OccupancyMap map(0.1, 41, {0, 0});
+  OccupancyMap map(0.1);
   map.insert(beam(1.5), {0, 0.01, 0}, 1.0);
   EXPECT_EQ(ahead(map, 0.55).passes, 1);
   EXPECT_FALSE(ahead(map, 1.5).known());
 }
 
 TEST(OccupancyMap, AVanishedObstacleIsNoLongerOccupied) {
-  OccupancyMap map(0.1, 41, {0, 0});
+  OccupancyMap map(0.1);
   for (int k = 0; k < 3; ++k) map.insert(beam(1.05), {0, 0.01, 0}, 8);
   EXPECT_TRUE(ahead(map, 1.05).occupied());
   EXPECT_EQ(ahead(map, 1.05).hits, 3);
@@ -59,7 +57,7 @@ TEST(OccupancyMap, AVanishedObstacleIsNoLongerOccupied) {
 }
 
 TEST(OccupancyMap, OccupiedCellsLieAtTheMeanOfTheirHits) {
-  OccupancyMap map(0.1, 41, {0, 0});
+  OccupancyMap map(0.1);
   map.insert(beam(1.02), {0, 0.01, 0}, 8);
   map.insert(beam(1.06), {0, 0.01, 0}, 8);
   std::vector<Vec2> seen;
@@ -69,6 +67,25 @@ TEST(OccupancyMap, OccupiedCellsLieAtTheMeanOfTheirHits) {
   EXPECT_NEAR(seen[0].y(), 0.01, 1e-6);
   map.each_near({100, 100}, 0.2, [&](const Vec2& p_W) { seen.push_back(p_W); });
   EXPECT_EQ(seen.size(), 1U);
+}
+
+TEST(OccupancyMap, HasNoEdgeAndTakesMemoryWhereItSees) {
+  OccupancyMap map(0.05);
+  map.insert(beam(2), {-5000, 3000, 0}, 8);
+  const std::size_t one = map.bytes();
+  map.insert(beam(2), {-5000, 3000, 0}, 8);
+  EXPECT_EQ(map.bytes(), one);
+  map.insert(beam(2), {5000, -3000, 0}, 8);
+  EXPECT_LE(map.bytes(), 3 * one);
+  EXPECT_EQ(map.at(map.cell_of({5002, -3000})).hits, 1);
+  EXPECT_EQ(map.at(map.cell_of({-4998, 3000})).hits, 2);
+  EXPECT_EQ(map.at(map.cell_of({-4998.5, 3000})).passes, 2);
+  std::size_t cells = 0;
+  map.each_cell([&](const OccupancyMap::Index&, const OccupancyMap::Tally& tally) {
+    if (tally.known()) ++cells;
+  });
+  EXPECT_GT(cells, 60U);
+  EXPECT_LT(cells, 100U);
 }
 
 }  // namespace

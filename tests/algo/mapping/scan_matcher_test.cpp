@@ -23,7 +23,7 @@ constexpr double kReach = 20;  // [m]
 const Pose2 kHere{3.0, 0.2, 0.4};
 
 OccupancyMap map_seen_from(const Pose2& pose_W) {
-  OccupancyMap map(0.05, 800, {4, 1});
+  OccupancyMap map(0.05);
   map.insert(rooms::scan_at(pose_W), pose_W, kReach);
   return map;
 }
@@ -80,7 +80,7 @@ TEST(ScanMatcher, SearchesWhenTheGuessIsFarOff) {
 }
 
 TEST(ScanMatcher, ReturnsTheGuessWhereTheMapIsEmpty) {
-  const OccupancyMap map(0.05, 400, {0, 0});
+  const OccupancyMap map(0.05);
   ScanMatcher matcher;
   matcher.take(rooms::scan_at(kHere), kReach);
   const algo::ScanMatch match = matcher.match(map, kHere, {});
@@ -95,7 +95,7 @@ TEST(ScanMatcher, InACorridorOdometryGivesThePositionAlongIt) {
   corridor.polygons = {{{-30, -1}, {30, -1}, {30, 1}, {-30, 1}}};
   algo::LaserScan scan;
   worlds::scan_world({}, corridor, 8.0, scan);  // sees neither end
-  OccupancyMap map(0.05, 800, {0, 0});
+  OccupancyMap map(0.05);
   map.insert(scan, {}, 7.9);
   ScanMatcher matcher;
   matcher.take(scan, 7.0);

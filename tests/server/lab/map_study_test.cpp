@@ -166,8 +166,67 @@ TEST_F(MapStudyOfALog, ThePageKeepsTheTextAroundTheTables) {
   EXPECT_THAT(picture.str(), testing::EndsWith("</svg>\n"));
 }
 
+TEST_F(MapStudyOfALog, PosesAndRelationsAreOfTheMatchedPath) {
+  const Recording log = read_recording(folder_ / "corridor.log");
+  std::ofstream(folder_ / "corridor.relations") << "0.4 2.0 1.6 0 0 0 0 0\n\n0 12.0 12 0 0 0 0 0\n";
+  MapOptions options;
+  options.match = true;
+  options.errors.odometry_scale = 0.05;
+  options.relations = read_relations(folder_ / "corridor.relations", log.stamps);
+  ASSERT_EQ(options.relations.size(), 2U);
+  EXPECT_EQ(options.relations[0].from, 2U);
+  EXPECT_EQ(options.relations[0].to, 10U);
+  const MapStudy study = study_map(log, options);
+  const nlohmann::json json = to_json(study);
+  const std::vector<Pose2>& path_W = study.runs[0].matched_W;
+  const double first =
+      (algo::pose_step(path_W[2], path_W[10]).position() - algo::Vec2(1.6, 0)).norm();
+  const double second =
+      (algo::pose_step(path_W[0], path_W[60]).position() - algo::Vec2(12, 0)).norm();
+  EXPECT_NEAR(json["translation_mean_m"], (first + second) / 2, 1e-9);
+  EXPECT_NEAR(json["translation_sd_m"], std::abs(first - second) / 2, 1e-9);
+  EXPECT_TRUE(json.contains("rotation_mean_rad") && json.contains("rotation_sd_rad"));
+  write_poses(study, folder_ / "out.txt");
+  std::ifstream poses(folder_ / "out.txt");
+  double stamp = 0;
+  Pose2 pose;
+  std::size_t lines = 0;
+  while (poses >> stamp >> pose.x >> pose.y >> pose.heading) {
+    EXPECT_NEAR(stamp, 0.2 * static_cast<double>(lines), 1e-6);
+    EXPECT_NEAR(pose.x, path_W[lines].x, 1e-6);
+    ++lines;
+  }
+  EXPECT_EQ(lines, 80U);
+}
+
+TEST_F(MapStudyOfALog, BadRelationsAreSentences) {
+  const std::vector<double> stamps{10, 11, 12};
+  const auto complaint = [&](const std::string& text) -> std::string {
+    std::ofstream(folder_ / "bad.relations") << text;
+    try {
+      read_relations(folder_ / "bad.relations", stamps);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(complaint("10 11 1 0 0 0 0 0\n# 1\n"), "");
+  EXPECT_THAT(complaint(""), testing::HasSubstr("holds no relation"));
+  EXPECT_THAT(complaint("10 11 1 0 0 0 0\n"), testing::HasSubstr("Line 1 of bad.relations"));
+  EXPECT_THAT(complaint("\n10 11 1 nan 0 0 0 0\n"), testing::HasSubstr("Line 2"));
+  EXPECT_THAT(complaint("10 11 1 0 0 0 0 0 9\n"), testing::HasSubstr("more than the eight"));
+  EXPECT_THAT(complaint("10 14 1 0 0 0 0 0\n"), testing::HasSubstr("nearest scan is 2 s away"));
+  EXPECT_THROW(read_relations(folder_ / "none", stamps), std::runtime_error);
+  std::ofstream(folder_ / "good.relations") << "0 0 1 0 0 0 0 0\n";
+  EXPECT_THROW(read_relations(folder_ / "good.relations", std::vector<double>{0, 0}),
+               std::runtime_error);
+}
+
 TEST_F(MapStudyOfALog, ErrorsAreSentences) {
   EXPECT_THROW(read_recording(folder_ / "nothing.log"), std::runtime_error);
+  std::ofstream(folder_ / "jump.log") << "FLASER 2 1 1 0 0 0 0 0 0 1 host 1\n"
+                                         "FLASER 2 1 1 9e8 0 0 9e8 0 0 2 host 2\n";
+  EXPECT_THROW(read_recording(folder_ / "jump.log"), std::runtime_error);
   MapOptions options;
   options.errors.odometry_slip = 1;
   EXPECT_THROW(study_map(read_recording(folder_ / "corridor.log"), options), std::invalid_argument);

@@ -1,0 +1,226 @@
+// server/lab/mapping/long_building.cpp: the building, the drive, and what is written of them.
+#include "server/lab/mapping/long_building.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "algo/obstacle.hpp"
+#include "server/run/text_file.hpp"
+#include "sim/drive_errors.hpp"
+#include "sim/random.hpp"
+#include "sim/range_caster.hpp"
+
+namespace server::mapping {
+namespace {
+
+using algo::Pose2;
+using algo::Vec2;
+
+constexpr double kLength = 298;         // [m] between the outer corridors' middles
+constexpr double kCross = 200;          // [m] at which a corridor joins the long ones
+constexpr double kDepth = 50;           // [m] between the long corridors
+constexpr double kHalfCorridor = 1.2;   // [m]
+constexpr double kWallThickness = 0.1;  // [m]
+constexpr double kStep = 0.15;          // [m] between two scans
+constexpr double kTurnStep = 0.1;       // [rad] likewise, turning on the spot
+constexpr double kPeriod = 0.2;         // [s] likewise
+constexpr double kSway = 0.2;           // [m] to both sides of the corridor's middle
+constexpr double kSwayRate = 0.3;       // [rad/m]
+constexpr double kBuildingRange = 30;   // [m]
+constexpr double kRangeNoise = 0.01;    // [m]
+constexpr double kNothing = 81.91;      // [m] as an LMS writes "no echo"
+constexpr sim::BeamPattern kBeams{-std::numbers::pi / 2, std::numbers::pi / 180, 181};
+constexpr std::size_t kNextRelation = 7;  // scans, about a metre
+constexpr std::size_t kLoopStride = 20;   // scans between the poses that close loops
+constexpr std::size_t kLoopAge = 700;     // scans between the two poses of a loop
+constexpr double kSamePlace = 2;          // [m]
+
+/// Puts up walls along corridors.
+class Builder {
+ public:
+  explicit Builder(std::uint64_t seed) : random_(seed, 0xb17d) {}
+
+  /// A side of a corridor from `a` to `b`, with the corridor to its left: doors, and open rooms.
+  void side(const Vec2& a, const Vec2& b) {
+    const double length = (b - a).norm();
+    const Pose2 along_W{a.x(), a.y(), std::atan2((b - a).y(), (b - a).x())};
+    double at = 0;
+    while (true) {
+      const double next = at + random_.uniform(1.5, 7);
+      const double door = random_.uniform(0.8, 1.3);
+      if (next + door + 0.3 > length) break;
+      wall(along_W, {at, 0}, {next, 0});
+      if (random_.uniform() < 0.75) {
+        closed_door(along_W, next, door);
+      } else {
+        open_room(along_W, next, door, length);
+      }
+      at = next + door;
+    }
+    wall(along_W, {at, 0}, {length, 0});
+  }
+
+  sim::RangeCaster& caster() { return caster_; }
+
+ private:
+  void closed_door(const Pose2& along_W, double at, double width) {
+    const double deep = -random_.uniform(0.1, 0.35);
+    wall(along_W, {at, 0}, {at, deep});
+    wall(along_W, {at, deep}, {at + width, deep});
+    wall(along_W, {at + width, deep}, {at + width, 0});
+  }
+
+  void open_room(const Pose2& along_W, double at, double width, double length) {
+    const double middle = at + width / 2;
+    const double half = std::min({random_.uniform(1.5, 3), middle, length - middle});
+    const double deep = -random_.uniform(3, 7);
+    constexpr double kFront = -0.15;  // [m] the room's side of the corridor's wall
+    wall(along_W, {middle - half, kFront}, {at, kFront});
+    wall(along_W, {at + width, kFront}, {middle + half, kFront});
+    wall(along_W, {middle - half, kFront}, {middle - half, deep});
+    wall(along_W, {middle + half, kFront}, {middle + half, deep});
+    wall(along_W, {middle - half, deep}, {middle + half, deep});
+    const Vec2 cupboard(middle + random_.uniform(-1, 1), -random_.uniform(1.5, 2.7));
+    const double edge = random_.uniform(0.3, 0.8);
+    add({algo::compose(along_W, {cupboard.x(), cupboard.y(), 0}), algo::Box{edge, edge}});
+  }
+
+  void wall(const Pose2& along_W, const Vec2& from, const Vec2& to) {
+    const Vec2 way = to - from;
+    const Vec2 middle = (from + to) / 2;
+    const Pose2 at{middle.x(), middle.y(), std::atan2(way.y(), way.x())};
+    add({algo::compose(along_W, at), algo::Wall{way.norm(), kWallThickness}});
+  }
+
+  struct Thing {
+    Pose2 pose_W{};
+    algo::Shape shape{};
+  };
+  void add(const Thing& thing) {
+    caster_.add({.id = ++count_, .pose_W = thing.pose_W, .shape = thing.shape});
+  }
+
+  sim::Random random_;
+  sim::RangeCaster caster_;
+  std::uint32_t count_ = 0;
+};
+
+void put_up(Builder& builder) {
+  constexpr double w = kHalfCorridor;
+  builder.side({-w, -w}, {kLength + w, -w});
+  builder.side({kLength + w, -w}, {kLength + w, kDepth + w});
+  builder.side({kLength + w, kDepth + w}, {-w, kDepth + w});
+  builder.side({-w, kDepth + w}, {-w, -w});
+  constexpr std::array<std::array<double, 2>, 2> kBlocks{{{0, kCross}, {kCross, kLength}}};
+  for (const auto& [left, right] : kBlocks) {
+    builder.side({left + w, kDepth - w}, {right - w, kDepth - w});
+    builder.side({right - w, kDepth - w}, {right - w, w});
+    builder.side({right - w, w}, {left + w, w});
+    builder.side({left + w, w}, {left + w, kDepth - w});
+  }
+}
+
+/// Straight from corner to corner, swaying a little, with turns on the spot.
+std::vector<Pose2> drive() {
+  const std::vector<Vec2> corners_W{{20, 0},
+                                    {kCross, 0},
+                                    {kCross, kDepth},
+                                    {0, kDepth},
+                                    {0, 0},
+                                    {kCross, 0},
+                                    {kLength, 0},
+                                    {kLength, kDepth},
+                                    {kCross, kDepth},
+                                    {kCross, 0},
+                                    {0, 0},
+                                    {0, kDepth},
+                                    {kLength, kDepth},
+                                    {kLength, 0},
+                                    {20, 0}};
+  std::vector<Pose2> path_W{{20, 0, 0}};
+  for (std::size_t k = 1; k < corners_W.size(); ++k) {
+    const Vec2 way = corners_W[k] - corners_W[k - 1];
+    const double heading = std::atan2(way.y(), way.x());
+    const Pose2 before = path_W.back();
+    const double turn = algo::wrap_angle(heading - before.heading);
+    const int turns = static_cast<int>(std::ceil(std::abs(turn) / kTurnStep));
+    for (int i = 1; i <= turns; ++i) {
+      path_W.push_back({before.x, before.y, algo::wrap_angle(before.heading + turn * i / turns)});
+    }
+    const Pose2 start_W{corners_W[k - 1].x(), corners_W[k - 1].y(), heading};
+    const int steps = static_cast<int>(way.norm() / kStep);
+    for (int i = 1; i <= steps; ++i) {
+      const double at = way.norm() * i / steps;
+      const double calm = std::min(1.0, std::min(at, way.norm() - at) / 2);
+      const double slope = kSway * kSwayRate * calm * std::cos(kSwayRate * at);
+      path_W.push_back(
+          algo::compose(start_W, {at, kSway * calm * std::sin(kSwayRate * at), std::atan(slope)}));
+    }
+  }
+  return path_W;
+}
+
+std::string relation(const std::vector<Pose2>& path_W, std::size_t i, std::size_t j) {
+  const Pose2 step = algo::pose_step(path_W[i], path_W[j]);
+  return fmt::format("{:.6f} {:.6f} {:.6f} {:.6f} 0 0 0 {:.6f}\n",
+                     kPeriod * static_cast<double>(i + 1),
+                     kPeriod * static_cast<double>(j + 1),
+                     step.x,
+                     step.y,
+                     step.heading);
+}
+
+std::string relations_of(const std::vector<Pose2>& path_W) {
+  std::string out;
+  for (std::size_t i = 0; i + kNextRelation < path_W.size(); i += kNextRelation) {
+    out += relation(path_W, i, i + kNextRelation);
+  }
+  for (std::size_t i = 0; i < path_W.size(); i += kLoopStride) {
+    for (std::size_t j = i + kLoopAge; j < path_W.size(); j += kLoopStride) {
+      const double apart = (path_W[i].position() - path_W[j].position()).norm();
+      if (apart < kSamePlace) out += relation(path_W, i, j);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+void write_long_building(const std::filesystem::path& file,
+                         std::uint64_t seed,
+                         const sim::DriveConfig& errors) {
+  if (const auto problem = sim::defect(errors)) throw std::invalid_argument(*problem);
+  Builder builder(seed);
+  put_up(builder);
+  const std::vector<Pose2> path_W = drive();
+  const std::vector<Pose2> odometry_W = sim::reported_path(path_W, errors, seed);
+  sim::Random noise(seed, 0x5ca9);
+  std::vector<double> ranges(kBeams.beams);
+  std::vector<double> draws(kBeams.beams);
+  std::string log = "# A simulated drive; the poses are the odometry's.\n";
+  for (std::size_t i = 0; i < path_W.size(); ++i) {
+    builder.caster().cast(path_W[i], kBeams, kBuildingRange, ranges);
+    noise.fill_normal(draws);
+    log += fmt::format("FLASER {}", kBeams.beams);
+    for (std::size_t k = 0; k < ranges.size(); ++k) {
+      const bool seen = ranges[k] < kBuildingRange;
+      log += fmt::format(" {:.2f}",
+                         seen ? std::max(0.0, ranges[k] + kRangeNoise * draws[k]) : kNothing);
+    }
+    const Pose2& pose = odometry_W[i];
+    const std::string place = fmt::format("{:.6f} {:.6f} {:.6f}", pose.x, pose.y, pose.heading);
+    const double stamp = kPeriod * static_cast<double>(i + 1);
+    log += fmt::format(" {} {} {:.6f} simulated {:.6f}\n", place, place, stamp, stamp);
+  }
+  write_text(file, log);
+  write_text(std::filesystem::path(file).replace_extension(".relations"), relations_of(path_W));
+}
+
+}  // namespace server::mapping
