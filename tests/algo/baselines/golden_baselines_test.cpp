@@ -15,12 +15,12 @@ namespace {
 using algo::Vec2;
 using golden::Json;
 
-const Json& document() {
+const Json& baselines_document() {
   static const Json loaded = golden::load("F_baselines.json");
   return loaded;
 }
-double tolerance() {
-  return golden::tolerance(document());
+double baselines_tolerance() {
+  return golden::tolerance(baselines_document());
 }
 
 Vec2 point(const Json& p) {
@@ -28,8 +28,8 @@ Vec2 point(const Json& p) {
 }
 
 void expect_point(const Vec2& actual, const Json& expected) {
-  EXPECT_TRUE(golden::close(actual.x(), expected.at(0), tolerance()));
-  EXPECT_TRUE(golden::close(actual.y(), expected.at(1), tolerance()));
+  EXPECT_TRUE(golden::close(actual.x(), expected.at(0), baselines_tolerance()));
+  EXPECT_TRUE(golden::close(actual.y(), expected.at(1), baselines_tolerance()));
 }
 
 /// The grid about the robot with C readings in each of the vector's cells.
@@ -47,8 +47,8 @@ algo::HistogramGrid grid_of(const Json& vector) {
 }
 
 TEST(BaselinesGolden, PotentialField) {
-  ASSERT_FALSE(document().at("apf").empty());
-  for (const Json& vector : document().at("apf")) {
+  ASSERT_FALSE(baselines_document().at("apf").empty());
+  for (const Json& vector : baselines_document().at("apf")) {
     const algo::PotentialSettings settings{.k_a = vector.at("k"),
                                            .f_max = std::numeric_limits<double>::infinity(),
                                            .eta = vector.at("eta"),
@@ -63,8 +63,8 @@ TEST(BaselinesGolden, PotentialField) {
 }
 
 TEST(BaselinesGolden, Vff) {
-  ASSERT_FALSE(document().at("vff").empty());
-  for (const Json& vector : document().at("vff")) {
+  ASSERT_FALSE(baselines_document().at("vff").empty());
+  for (const Json& vector : baselines_document().at("vff")) {
     const algo::VffForces forces = algo::vff_forces(grid_of(vector),
                                                     point(vector.at("robot")),
                                                     point(vector.at("goal")),
@@ -77,15 +77,16 @@ TEST(BaselinesGolden, Vff) {
 }
 
 TEST(BaselinesGolden, Vfh) {
-  ASSERT_FALSE(document().at("vfh").empty());
-  for (const Json& vector : document().at("vfh")) {
+  ASSERT_FALSE(baselines_document().at("vfh").empty());
+  for (const Json& vector : baselines_document().at("vfh")) {
     const Vec2 robot = point(vector.at("robot"));
     const Vec2 way = point(vector.at("goal")) - robot;
     const algo::PolarDensity density = algo::polar_density(grid_of(vector), robot);
     const algo::PolarDensity smoothed = algo::smooth(density);
     for (std::size_t k = 0; k < density.size(); ++k) {
-      EXPECT_TRUE(golden::close(density[k], vector.at("H").at(k), tolerance())) << k;
-      EXPECT_TRUE(golden::close(smoothed[k], vector.at("H_smooth").at(k), tolerance())) << k;
+      EXPECT_TRUE(golden::close(density[k], vector.at("H").at(k), baselines_tolerance())) << k;
+      EXPECT_TRUE(golden::close(smoothed[k], vector.at("H_smooth").at(k), baselines_tolerance()))
+          << k;
     }
     const int target = algo::sector_of(std::atan2(way.y(), way.x()));
     EXPECT_EQ(target, vector.at("k_target").get<int>());
@@ -93,11 +94,11 @@ TEST(BaselinesGolden, Vfh) {
     ASSERT_TRUE(sector);
     EXPECT_TRUE(golden::close_angle(algo::sector_centre(*sector),
                                     vector.at("steer_deg").get<double>() * algo::kSectorWidth / 5,
-                                    tolerance()));
+                                    baselines_tolerance()));
     const double ahead = smoothed[static_cast<std::size_t>(target)];
     EXPECT_TRUE(golden::close(algo::vfh_speed(ahead, vector.at("hm"), vector.at("vmax")),
                               vector.at("speed"),
-                              tolerance()));
+                              baselines_tolerance()));
   }
 }
 

@@ -15,7 +15,7 @@ namespace {
 using algo::Border;
 using golden::Json;
 
-const Json& document() {
+const Json& pseudomedian_document() {
   static const Json loaded = golden::load("A_pseudomedian.json");
   return loaded;
 }
@@ -23,15 +23,16 @@ const Json& document() {
 void expect_list(const std::vector<double>& actual, const Json& expected, const std::string& what) {
   ASSERT_EQ(actual.size(), expected.size()) << what;
   for (std::size_t i = 0; i < actual.size(); ++i) {
-    EXPECT_TRUE(golden::close(actual[i], expected.at(i), golden::tolerance(document())))
+    EXPECT_TRUE(
+        golden::close(actual[i], expected.at(i), golden::tolerance(pseudomedian_document())))
         << what << ", sample " << i;
   }
 }
 
 TEST(PseudomedianGolden, Vectors) {
   algo::FilterScratch scratch;
-  ASSERT_FALSE(document().at("vectors").empty());
-  for (const Json& vector : document().at("vectors")) {
+  ASSERT_FALSE(pseudomedian_document().at("vectors").empty());
+  for (const Json& vector : pseudomedian_document().at("vectors")) {
     const std::vector<double> in = golden::numbers(vector.at("in"));
     const int N = vector.at("N");
     const bool reflect = vector.value("border", "replicate") == "reflect";
@@ -49,8 +50,8 @@ TEST(PseudomedianGolden, Vectors) {
 
 TEST(PseudomedianGolden, InvalidAware) {
   algo::FilterScratch scratch;
-  ASSERT_FALSE(document().at("invalid_aware").empty());
-  for (const Json& vector : document().at("invalid_aware")) {
+  ASSERT_FALSE(pseudomedian_document().at("invalid_aware").empty());
+  for (const Json& vector : pseudomedian_document().at("invalid_aware")) {
     const std::vector<double> in = golden::numbers(vector.at("in"));
     std::vector<std::uint8_t> valid;
     for (const bool each : vector.at("valid")) valid.push_back(each ? 1 : 0);
@@ -67,7 +68,7 @@ TEST(PseudomedianGolden, InvalidAware) {
 /// The same vectors through a whole LaserScan, 1 mm of the file as 1 mm of range.
 TEST(PseudomedianGolden, InvalidAwareScan) {
   algo::ScanFilter filter;
-  for (const Json& vector : document().at("invalid_aware")) {
+  for (const Json& vector : pseudomedian_document().at("invalid_aware")) {
     algo::LaserScan in;
     in.range_max = 1000;
     in.resize(vector.at("in").size());
@@ -80,8 +81,9 @@ TEST(PseudomedianGolden, InvalidAwareScan) {
     for (std::size_t i = 0; i < in.size(); ++i) {
       const bool valid = vector.at("out_valid").at(i);
       EXPECT_EQ(out.status[i], valid ? algo::Beam::Ok : algo::Beam::Invalid) << i;
-      EXPECT_TRUE(golden::close(
-          out.ranges[i] / golden::kMm, vector.at("out").at(i), golden::tolerance(document())))
+      EXPECT_TRUE(golden::close(out.ranges[i] / golden::kMm,
+                                vector.at("out").at(i),
+                                golden::tolerance(pseudomedian_document())))
           << i;
     }
   }
@@ -113,7 +115,7 @@ std::vector<double> base_scan(const std::string& text) {
 }
 
 TEST(PseudomedianGolden, Scan360) {
-  const Json& about = document().at("scan360");
+  const Json& about = pseudomedian_document().at("scan360");
   const std::vector<double> base = base_scan(about.at("base"));
   ASSERT_EQ(base.size(), 360U) << about.at("base");
   std::vector<double> in = base;
@@ -132,8 +134,8 @@ TEST(PseudomedianGolden, Scan360) {
 
 TEST(LuluGolden, Vectors) {
   algo::FilterScratch scratch;
-  ASSERT_FALSE(document().at("lulu").empty());
-  for (const Json& vector : document().at("lulu")) {
+  ASSERT_FALSE(pseudomedian_document().at("lulu").empty());
+  for (const Json& vector : pseudomedian_document().at("lulu")) {
     const std::vector<double> in = golden::numbers(vector.at("in"));
     std::vector<double> out(in.size());
     algo::lulu(in, vector.at("N").get<int>(), Border::Replicate, scratch, out);

@@ -20,17 +20,17 @@ using golden::Json;
 
 constexpr double kCmPerMetre = 100;
 
-const Json& document() {
+const Json& robhaz_document() {
   static const Json loaded = golden::load("G_robhaz.json");
   return loaded;
 }
 const Json& vectors(const char* name) {
-  const Json& list = document().at(name);
+  const Json& list = robhaz_document().at(name);
   EXPECT_FALSE(list.empty()) << name;
   return list;
 }
-double tolerance() {
-  return golden::tolerance(document());
+double robhaz_tolerance() {
+  return golden::tolerance(robhaz_document());
 }
 double metres(const Json& cm) {
   return cm.get<double>() / kCmPerMetre;
@@ -40,7 +40,7 @@ double radians(const Json& degrees) {
 }
 
 TEST(RobhazGolden, SparsenessAndItsSpeed) {
-  const Json& list = document().at("sparseness");
+  const Json& list = robhaz_document().at("sparseness");
   Parameters parameters;
   parameters.set(algo::kSparsenessFactor, list.at("gamma"));
   parameters.set(algo::kRingReach, list.at("D_max"));
@@ -49,15 +49,15 @@ TEST(RobhazGolden, SparsenessAndItsSpeed) {
   for (const Json& vector : list.at("seq")) {
     const auto step = algo::sparseness_step(
         vector.at("sprs"), golden::numbers(vector.at("D")), list.at("v_max"), parameters);
-    EXPECT_TRUE(close(step.range, vector.at("A_rng"), tolerance()));
-    EXPECT_TRUE(close(step.speed, vector.at("v_sprs"), tolerance()));
-    EXPECT_TRUE(close(step.next, vector.at("sprs_next"), tolerance()));
+    EXPECT_TRUE(close(step.range, vector.at("A_rng"), robhaz_tolerance()));
+    EXPECT_TRUE(close(step.speed, vector.at("v_sprs"), robhaz_tolerance()));
+    EXPECT_TRUE(close(step.next, vector.at("sprs_next"), robhaz_tolerance()));
   }
 }
 
 /// The same, with the state carried on from one sample to the next.
 TEST(RobhazGolden, SparsenessAsAStream) {
-  const Json& list = document().at("sparseness");
+  const Json& list = robhaz_document().at("sparseness");
   Parameters parameters;
   parameters.set(algo::kSparsenessFactor, list.at("gamma"));
   parameters.set(algo::kRingReach, list.at("D_max"));
@@ -67,12 +67,12 @@ TEST(RobhazGolden, SparsenessAsAStream) {
     const auto step = algo::sparseness_step(
         sparseness, golden::numbers(vector.at("D")), list.at("v_max"), parameters);
     sparseness = step.next;
-    EXPECT_TRUE(close(sparseness, vector.at("sprs_next"), tolerance()));
+    EXPECT_TRUE(close(sparseness, vector.at("sprs_next"), robhaz_tolerance()));
   }
 }
 
 TEST(RobhazGolden, SpeedBeforeAnObstacle) {
-  const double v_max = document().at("sparseness").at("v_max");
+  const double v_max = robhaz_document().at("sparseness").at("v_max");
   for (const Json& vector : vectors("velocity")) {
     Parameters parameters;
     parameters.set(algo::kStopDistance, vector.at("D_min"));
@@ -82,7 +82,7 @@ TEST(RobhazGolden, SpeedBeforeAnObstacle) {
                                         golden::numbers(vector.at("D")),
                                         v_max,
                                         parameters);
-    EXPECT_TRUE(close(v, vector.at("v"), tolerance()));
+    EXPECT_TRUE(close(v, vector.at("v"), robhaz_tolerance()));
   }
 }
 
@@ -99,7 +99,7 @@ TEST(RobhazGolden, Votes) {
 
 /// The first vector is the worked example of the paper's Fig. 2: 95 cm, -62.5 degrees, 5 votes.
 TEST(RobhazGolden, ModifiedHoughTransform) {
-  const Json& list = document().at("hough");
+  const Json& list = robhaz_document().at("hough");
   ASSERT_EQ(list.at("alpha_deg"), 5.0);
   ASSERT_EQ(list.at("beta_cm"), 10.0);
   ASSERT_FALSE(list.at("vectors").empty());
@@ -112,8 +112,8 @@ TEST(RobhazGolden, ModifiedHoughTransform) {
     const auto wall = algo::find_wall(points);
     const Json& out = vector.at("out");
     ASSERT_TRUE(wall);
-    EXPECT_TRUE(close(wall->rho * kCmPerMetre, out.at("rho"), tolerance()));
-    EXPECT_TRUE(close(wall->theta / kRadiansPerDegree, out.at("theta"), tolerance()));
+    EXPECT_TRUE(close(wall->rho * kCmPerMetre, out.at("rho"), robhaz_tolerance()));
+    EXPECT_TRUE(close(wall->theta / kRadiansPerDegree, out.at("theta"), robhaz_tolerance()));
     EXPECT_EQ(wall->votes, out.at("votes"));
     EXPECT_EQ(wall->ties, out.at("ties"));
   }
@@ -126,11 +126,12 @@ void expect_turn(const Json& vector, const std::string& name, algo::WallLaw law)
   const algo::WallModel wall{.rho = metres(vector.at("rho")), .theta = radians(vector.at("theta"))};
   const auto turn = algo::follow_wall(wall, radians(vector.at("w_max")), parameters, law);
   const Json& out = vector.at(name);
-  EXPECT_TRUE(close(turn.offset * kCmPerMetre, out.at("D_diff"), tolerance())) << name;
-  EXPECT_TRUE(close(turn.aside / kRadiansPerDegree, out.at("theta_wall"), tolerance())) << name;
-  EXPECT_TRUE(close(turn.xi_1, out.at("xi1"), tolerance())) << name;
-  EXPECT_TRUE(close(turn.xi_2, out.at("xi2"), tolerance())) << name;
-  EXPECT_TRUE(close(turn.omega / kRadiansPerDegree, out.at("omega"), tolerance())) << name;
+  EXPECT_TRUE(close(turn.offset * kCmPerMetre, out.at("D_diff"), robhaz_tolerance())) << name;
+  EXPECT_TRUE(close(turn.aside / kRadiansPerDegree, out.at("theta_wall"), robhaz_tolerance()))
+      << name;
+  EXPECT_TRUE(close(turn.xi_1, out.at("xi1"), robhaz_tolerance())) << name;
+  EXPECT_TRUE(close(turn.xi_2, out.at("xi2"), robhaz_tolerance())) << name;
+  EXPECT_TRUE(close(turn.omega / kRadiansPerDegree, out.at("omega"), robhaz_tolerance())) << name;
 }
 
 TEST(RobhazGolden, FollowsAWallInBothReadings) {
@@ -145,8 +146,8 @@ TEST(RobhazGolden, BandBetweenTwoBounds) {
   for (const Json& vector : vectors("turnover")) {
     const Json& out = vector.at("out");
     const auto band = algo::band_between(out.at("w_lb"), out.at("w_ub"), vector.at("w_max"));
-    EXPECT_TRUE(close(band.offset, out.at("q_offset"), tolerance()));
-    EXPECT_TRUE(close(band.half_width, out.at("W_DB"), tolerance()));
+    EXPECT_TRUE(close(band.offset, out.at("q_offset"), robhaz_tolerance()));
+    EXPECT_TRUE(close(band.half_width, out.at("W_DB"), robhaz_tolerance()));
   }
 }
 
@@ -156,7 +157,7 @@ TEST(RobhazGolden, Force) {
     const algo::ForceBand band{.offset = vector.at("q_offset"), .half_width = vector.at("W_DB")};
     const algo::ForceLevels levels{.above = vector.at("F_P"), .below = vector.at("F_N")};
     const double force = algo::reflected_force(vector.at("q"), band, levels, kBangBang);
-    EXPECT_TRUE(close(force, vector.at("F"), tolerance()));
+    EXPECT_TRUE(close(force, vector.at("F"), robhaz_tolerance()));
   }
 }
 
