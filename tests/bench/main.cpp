@@ -33,7 +33,7 @@ constexpr std::array<Family, 12> kFamilies{{
     {"P19 P20 P21", bench::storage},
     {"P22", bench::timers},
     {"P23", bench::external},
-    {"P24", bench::arms},
+    {"P24 P25", bench::arms},
 }};
 constexpr std::string_view kElsewhere =
     "Not here: P8 and P15 compare with other programs and are measured outside this repository.";
