@@ -1,6 +1,7 @@
 // algo/gate.cpp: the checks, most severe first.
 #include "algo/gate.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "algo/ground_sense.hpp"
@@ -17,6 +18,13 @@ bool leaves_bumpers(const Observation& observation, double v) {
   return true;
 }
 
+bool finite_joints(const Observation& observation, const Command& command) {
+  const auto is_finite = [](double value) { return std::isfinite(value); };
+  return std::ranges::all_of(command.joint_rates, is_finite) &&
+         (!observation.joints || (std::ranges::all_of(observation.joints->position, is_finite) &&
+                                  std::ranges::all_of(observation.joints->rate, is_finite)));
+}
+
 }  // namespace
 
 Hold gate(const GateInput& in, const Observation& observation, const Command& command) {
@@ -24,8 +32,13 @@ Hold gate(const GateInput& in, const Observation& observation, const Command& co
   if (observation.halt != Halt::None) return holds::kHalted;
   const Odometry& odometry = observation.odometry;
   if (!std::isfinite(observation.stamp) || !finite(odometry.pose) || !finite(odometry.twist) ||
-      !finite(command.base)) {
+      !finite(command.base) || !finite_joints(observation, command)) {
     return holds::kNotFinite;
+  }
+  const auto& joints = observation.joints;
+  // Written so that a NaN stamp counts as stale.
+  if (in.needs_joints && !(joints && observation.stamp - joints->stamp <= in.scan_timeout)) {
+    return holds::kNoJoints;
   }
   const auto& tilt = observation.inclinometer;
   if (tilt && is_overturned(tilt->roll, tilt->pitch)) return holds::kOverturned;

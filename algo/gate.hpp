@@ -37,6 +37,7 @@ struct GateInput {
   bool needs_tilt = false;  // the robot drives by its inclinometer
   double tilt_timeout = 0;  // [s]
   std::optional<double> tilt_stamp{};  // [s] of its newest reading; empty before the first
+  bool needs_joints = false;           // the robot has an arm
 };
 
 namespace holds {
@@ -61,6 +62,10 @@ inline constexpr Hold kNoTilt{
     "no_tilt",
     "Waiting for the inclinometer",
     "No reading has come yet. Without it the robot does not know how it leans."};
+inline constexpr Hold kNoJoints{
+    "no_joints",
+    "Waiting for the arm",
+    "It does not say how its joints stand. Without that nobody knows what it may touch."};
 inline constexpr Hold kNotFinite{
     "not_finite", "Holding still", "A sensor or the controller gave a value that is not a number."};
 /// The robot holds itself; observation.halt says why.

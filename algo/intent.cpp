@@ -21,6 +21,8 @@ constexpr std::array<std::string_view, 4> kStickModes{"guarded", "wall", "raw", 
 
 bool Intent::set_goal(const std::optional<SetGoal>& to) {
   goal = to;
+  hand_goal.reset();
+  carry_goal.reset();
   goals_behind.clear();
   goals_ahead.clear();
   loop = false;
@@ -68,7 +70,10 @@ bool Intent::apply(const Request& request) {
                    return false;
                  },
                  [&](const SetGoals& to) { return set_goals(to); },
-                 [&](const ClearGoal&) { return set_goal(std::nullopt); },
+                 [&](const ClearGoal&) {
+                   joint_goal.reset();
+                   return set_goal(std::nullopt);
+                 },
                  [&](const Joystick& pushed) {
                    stick = pushed;
                    // When a driver goes silent the robot must stand still, not drive off to an old
@@ -100,7 +105,29 @@ bool Intent::apply(const Request& request) {
                  [&](const RemoveObstacle& remove) {
                    std::erase_if(obstacles, [&](const auto& o) { return o.id == remove.id; });
                    return false;
-                 }},
+                 },
+                 [&](const SetJoints& to) {
+                   hand_goal.reset();
+                   carry_goal.reset();
+                   joint_goal = to;
+                   ++arm_goals;
+                   return false;
+                 },
+                 [&](const SetHandGoal& to) {
+                   set_goal(std::nullopt);
+                   joint_goal.reset();
+                   hand_goal = to;
+                   ++arm_goals;
+                   return true;
+                 },
+                 [&](const Carry& to) {
+                   set_goal(std::nullopt);
+                   joint_goal.reset();
+                   carry_goal = to.goal;
+                   ++arm_goals;
+                   return true;
+                 },
+                 [](const TakePlan&) { return false; }},
       request);
 }
 

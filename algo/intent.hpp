@@ -23,6 +23,10 @@ struct Intent {
   bool loop = false;                    // after the last goal, go on to the first
   bool stop = false;
   Joystick stick{};
+  std::optional<SetHandGoal> hand_goal{};  // excludes `goal`
+  std::optional<SetGoal> carry_goal{};     // the same, with the arm as it is
+  std::optional<SetJoints> joint_goal{};
+  std::uint32_t arm_goals = 0;  // counts those of the arm: the same may be set again
   Parameters parameters{};
   std::vector<Obstacle> obstacles{};
 

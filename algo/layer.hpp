@@ -80,8 +80,9 @@ inline Layer& add_layer(Recycled<Layer>& layers, const LayerInfo& info, std::siz
 inline void put(std::vector<float>& values, double value) {
   values.push_back(static_cast<float>(value));
 }
-inline void put(std::vector<float>& values, const Vec2& p) {
-  values.insert(values.end(), {static_cast<float>(p.x()), static_cast<float>(p.y())});
+template <typename Point>
+void put(std::vector<float>& values, const Eigen::MatrixBase<Point>& p) {
+  for (Eigen::Index k = 0; k < p.size(); ++k) values.push_back(static_cast<float>(p[k]));
 }
 template <typename... Parts>
 void put(Layer& layer, const Parts&... parts) {

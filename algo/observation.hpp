@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "algo/arm_spec.hpp"
 #include "algo/laser_scan.hpp"
 #include "algo/recycled.hpp"
 #include "algo/types.hpp"
@@ -83,6 +84,14 @@ struct Encoders {
   bool operator==(const Encoders&) const = default;
 };
 
+/// Of an arm's joints.
+struct JointReading {
+  double stamp = 0;        // [s] run clock
+  JointValues position{};  // [rad]
+  JointValues rate{};      // [rad/s]
+  bool operator==(const JointReading&) const = default;
+};
+
 /// Why real hardware holds its own wheels still, whatever the command. The port reports it after it
 /// has acted. The health report names the device.
 enum class Halt : std::uint8_t {
@@ -137,6 +146,7 @@ struct Observation {
   LineImage line{};
   std::optional<FloorRanges> floor{};   // only if new in this tick
   Recycled<ChannelReading> channels{};  // only those new in this tick
+  std::optional<JointReading> joints{};
 
   bool bumper_pressed() const {
     for (const BumperReading& bumper : bumpers) {
@@ -156,6 +166,7 @@ struct Observation {
     line.pixels.clear();
     floor.reset();
     channels.clear();
+    joints.reset();
   }
 };
 

@@ -217,6 +217,10 @@ double signed_distance(const Obstacle& obstacle, const Vec2& p_W) {
 std::optional<std::string> defect(const Obstacle& obstacle) {
   if (!finite(obstacle.pose_W)) return "x, y and heading must be finite numbers";
   if (auto wrong = size_defect("height", obstacle.height)) return wrong;
+  if (!(obstacle.bottom >= 0 && obstacle.bottom < obstacle.height)) {
+    return "bottom must be at least 0 and below height";
+  }
+  if (obstacle.bottom > 0 && is_ground(obstacle)) return "bottom: a ramp or a trench has none";
   const double reflectivity = obstacle.reflectivity;
   if (!(reflectivity >= kMinReflectivity && reflectivity <= kMaxReflectivity)) {
     return "reflectivity must be from 0.02 to 1";

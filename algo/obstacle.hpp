@@ -54,11 +54,12 @@ struct Obstacle {
   std::uint32_t id = 0;  // unique in its world
   Pose2 pose_W{};
   Shape shape{};
-  double height = 1.0;  // [m] above the floor, on which it stands
+  double height = 1.0;  // [m] of its top above the floor
   /// Diffuse reflectivity of the surface to the laser, 0.02 to 1.
   double reflectivity = 0.5;
   bool specular = false;
   std::optional<ObstaclePath> path{};  // of its reference point, if it moves by itself
+  double bottom = 0;                   // [m] above the floor: there is room below a table, a beam
   bool operator==(const Obstacle&) const = default;
 };
 

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "algo/arm_spec.hpp"
 #include "algo/name.hpp"
 #include "algo/obstacle.hpp"
 #include "algo/parameters.hpp"
@@ -90,6 +91,37 @@ struct SetParameter {
   bool operator==(const SetParameter&) const = default;
 };
 
+/// Turns the arm's joints straight to these positions.
+struct SetJoints {
+  JointValues position{};  // [rad]
+  bool operator==(const SetJoints&) const = default;
+};
+/// A unit quaternion.
+struct Quaternion {
+  double w = 1, x = 0, y = 0, z = 0;
+  bool operator==(const Quaternion&) const = default;
+};
+/// Brings the hand to a pose, with arm and base.
+struct SetHandGoal {
+  Vec3 position_W{0, 0, 0};
+  Quaternion attitude_W{};
+  std::optional<double> arm_angle{};  // [rad] at the goal, see arm_angle(); absent: any
+  bool base_stays = false;            // the arm alone moves
+  std::optional<SetGoal> then{};      // where the base goes after that, with the arm folded
+  bool operator==(const SetHandGoal&) const = default;
+};
+/// Drives the base straight to a goal with the arm as it is, stretched out too. Arm and base yield
+/// to what is in their way.
+struct Carry {
+  SetGoal goal{};
+  bool operator==(const Carry&) const = default;
+};
+/// The plan that the robot asked for has come, and is followed from this tick on. The run itself
+/// gives this request, so that the record has it and a replay repeats it.
+struct TakePlan {
+  bool operator==(const TakePlan&) const = default;
+};
+
 using Request = std::variant<SetGoal,
                              ClearGoal,
                              AddObstacle,
@@ -100,6 +132,10 @@ using Request = std::variant<SetGoal,
                              SetParameter,
                              AddGoal,
                              SetGoals,
-                             ChangeObstacle>;
+                             ChangeObstacle,
+                             SetJoints,
+                             SetHandGoal,
+                             Carry,
+                             TakePlan>;
 
 }  // namespace algo

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "algo/arm_spec.hpp"
 #include "algo/ground_sense.hpp"
 #include "algo/health.hpp"
 #include "algo/observation.hpp"
@@ -60,6 +61,7 @@ struct RobotSpec {
   std::optional<FloorSensors> floor{};
   std::optional<ClimbLimits> climbs{};  // if they were measured
   bool uneven = false;                  // it is known to drive where there are ramps or trenches
+  std::optional<ArmSpec> arm{};         // if it has one
 };
 
 /// The robot's height and inclination on ground that is not level. R in W is turned by the heading
@@ -77,9 +79,10 @@ struct GroundTruth {
   double obstacle_distance = 0;  // [m] from the robot's centre to the nearest surface
   double clearance = 0;          // [m] from the hull's outline to it, negative inside
   bool collided = false;
-  std::optional<Tilt> tilt{};  // if the ground is not level
-  bool overturned = false;     // it lies on its side or its back
-  bool fallen = false;         // it came down an edge higher than it can climb
+  std::optional<Tilt> tilt{};         // if the ground is not level
+  bool overturned = false;            // it lies on its side or its back
+  bool fallen = false;                // it came down an edge higher than it can climb
+  std::optional<BodyLink> touched{};  // the part of a robot with an arm that is in contact
   bool operator==(const GroundTruth&) const = default;
 };
 

@@ -40,7 +40,16 @@ static_assert(kHalts.size() == static_cast<std::size_t>(Halt::FloorFault) + 1);
 constexpr std::array<std::string_view, 5> kMissions{"idle", "driving", "arrived", "stuck", "held"};
 static_assert(kMissions.size() == static_cast<std::size_t>(Mission::Held) + 1);
 
+constexpr std::array<std::string_view, 7> kArmStates{
+    "rest", "turns", "plans", "goes", "waits", "arrived", "given_up"};
+static_assert(kArmStates.size() == static_cast<std::size_t>(ArmState::GivenUp) + 1);
+
 }  // namespace
+
+std::string_view name(ArmState state) {
+  const auto k = static_cast<std::size_t>(state);
+  return kArmStates[k < kArmStates.size() ? k : 0];
+}
 
 std::string_view name(const Hold& hold) {
   return hold ? hold.name.view() : "none";

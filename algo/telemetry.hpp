@@ -1,6 +1,7 @@
 // algo/telemetry.hpp: all data of one tick: sensed, requested, decided and commanded.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -93,11 +94,41 @@ struct Limit {
 /// The sequencing layer's state.
 enum class Mission : std::uint8_t { Idle, Driving, Arrived, Stuck, Held };
 
+/// What the arm does.
+enum class ArmState : std::uint8_t {
+  Rest,     // it has nothing to do
+  Turns,    // its joints, to where a person sets them
+  Plans,    // the body stands and waits for its plan
+  Goes,     // along its plan
+  Waits,    // for something to get out of its way
+  Arrived,  // the hand is at its goal, or the joints are
+  GivenUp,  // there is no way to the goal
+};
+/// "given_up", as REST and CSV spell it.
+std::string_view name(ArmState state);
+
+/// x [m], y [m] and yaw [rad] of R in W, then the joints [rad].
+using GhostPose = std::array<double, 3 + kArmJoints>;
+
+/// The arm in one tick, of a robot that has one.
+struct ArmTelemetry {
+  bool present = false;
+  ArmState state = ArmState::Rest;
+  std::optional<SetHandGoal> hand_goal{};
+  std::optional<SetJoints> joint_goal{};
+  std::array<double, kBodyLinks> clearance{};  // [m] of each link to all that the robot knows
+  double own_clearance = 0;                    // [m] of the arm to the robot itself
+  std::uint32_t plan = 0;                      // its number; 0: there is none
+  bool plan_fresh = false;                     // the frame carries the plan
+  Recycled<GhostPose> ghost{};                 // of the whole plan; only if fresh
+};
+
 namespace behaviours {
 
 inline constexpr Name kRest = "rest";  // no behaviour wants the base
 inline constexpr Name kAvoid = "avoid";
 inline constexpr Name kManual = "manual";
+inline constexpr Name kArm = "arm";        // brings the hand to its goal
 inline constexpr Name kGround = "ground";  // surveys the ground ahead
 
 }  // namespace behaviours
@@ -138,6 +169,7 @@ struct Telemetry {
   Mission mission = Mission::Idle;
   Name behaviour = behaviours::kRest;  // the one whose proposal was taken
   double clearance = 0;  // [m] hull to the nearest filtered return; range_max - radius if none
+  ArmTelemetry arm{};
 };
 
 }  // namespace algo

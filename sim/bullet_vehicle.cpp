@@ -33,7 +33,9 @@ int side_of(const btCompoundShape& chassis, int part, std::size_t wheels) {
 }  // namespace
 
 BulletVehicle::BulletVehicle(const RobotModel& robot, double period)
-    : robot_(robot), substeps_(period) {}
+    : robot_(robot),
+      substeps_(period, robot.arm ? robot.arm->step_rate : Substeps::kRate),
+      physics_(robot.arm ? Physics::Bodies::Jointed : Physics::Bodies::Rigid) {}
 
 BulletVehicle::~BulletVehicle() {
   take_down();
@@ -41,6 +43,7 @@ BulletVehicle::~BulletVehicle() {
 
 void BulletVehicle::take_down() {
   if (chassis_ == nullptr) return;
+  arm_.reset();
   physics_.world().removeConstraint(drive_.get());
   physics_.world().removeRigidBody(chassis_.get());
   drive_.reset();
@@ -82,8 +85,9 @@ void BulletVehicle::build_chassis() {
   const double xx = p.hull_length * p.hull_length;
   const double yy = p.hull_width * p.hull_width;
   const double zz = 4 * hull_half * hull_half;
-  const btVector3 inertia = btVector3(yy + zz, xx + zz, xx + yy) * (p.mass / 12);
-  btRigidBody::btRigidBodyConstructionInfo info(p.mass, nullptr, chassis_shape_.get(), inertia);
+  const double mass = p.mass + (p.arm ? p.arm->mass() : 0);
+  const btVector3 inertia = btVector3(yy + zz, xx + zz, xx + yy) * (mass / 12);
+  btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, chassis_shape_.get(), inertia);
   info.m_friction = 0;
   info.m_startWorldTransform.setOrigin(btVector3(0, 0, p.mass_height));
   chassis_ = make_bullet<btRigidBody>(info);
@@ -96,6 +100,7 @@ void BulletVehicle::build_chassis() {
       physics_.floor(),
       DriveConstraint::Layout{axle_of(p), p.half_track, p.mass_height, p.friction});
   physics_.world().addConstraint(drive_.get());
+  if (p.arm) arm_ = std::make_unique<BulletArm>(*p.arm, p.mass_height, physics_);
 }
 
 void BulletVehicle::reset(const algo::Pose2& start) {
@@ -106,6 +111,7 @@ void BulletVehicle::reset(const algo::Pose2& start) {
   build_chassis();
   wanted_ = {};
   target_ = {};
+  joint_rates_ = {};
   left_load_ = 0;
   right_load_ = 0;
   normal_ = btVector3(0, 0, 1);
@@ -124,6 +130,7 @@ void BulletVehicle::reset(const algo::Pose2& start) {
   read_state();
   state_.pose_W = start;  // exactly
   state_.twist = {};
+  if (arm_) arm_->place(*chassis_);
   parked_ = true;
   still_for_ = 0;
 }
@@ -219,7 +226,7 @@ void BulletVehicle::drive(const algo::Twist2& command,
                           const ObstacleSet& obstacles,
                           PoseTrail& trail) {
   wanted_ = within_limits(command, robot_);
-  if (wanted_ != algo::Twist2{}) {
+  if (wanted_ != algo::Twist2{} || joint_rates_ != algo::JointValues{}) {
     parked_ = false;
     still_for_ = 0;
   }
@@ -227,6 +234,9 @@ void BulletVehicle::drive(const algo::Twist2& command,
   if (!parked_) state_.contact = false;
   if (!parked_) state_.scrape = false;
   if (!parked_) state_.ground_contact.reset();
+  state_.arm.rate = {};
+  if (!parked_) state_.arm.touched.reset();
+  const algo::JointValues joints = state_.arm.position;
   for (std::size_t k = 0; k < substeps_.count; ++k) {
     if (!parked_) {
       physics_.gather(obstacles, state_.pose_W.position(), robot_.radius + kNear);
@@ -243,6 +253,18 @@ void BulletVehicle::drive(const algo::Twist2& command,
     trail.push(state_.pose_W);
     if (!level_) trail.tilt(state_.tilt());
   }
+  if (arm_) read_arm(joints);
+}
+
+void BulletVehicle::read_arm(const algo::JointValues& before) {
+  const double tick = substeps_.length * static_cast<double>(substeps_.count);
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    state_.arm.rate[k] = (state_.arm.position[k] - before[k]) / tick;
+  }
+}
+
+bool BulletVehicle::arm_rests() const {
+  return !arm_ || (joint_rates_ == algo::JointValues{} && arm_->settled());
 }
 
 /// One step of the physics under `target_`.
@@ -255,8 +277,12 @@ void BulletVehicle::substep() {
     const btVector3 down(0, 0, -std::cos(lean_));
     chassis_->setGravity(Physics::kGravity * (down - std::sin(lean_) * left));
   }
+  if (arm_) arm_->prepare(*chassis_, joint_rates_, substeps_.length);
   physics_.step(substeps_.length);
   read_contacts();
+  if (!arm_) return;
+  arm_->place(*chassis_);
+  if (const auto link = arm_->touched()) state_.arm.touched = link;
 }
 
 /// Reads loads and contacts from the impulses just solved. During the set-up of the next step they
@@ -269,6 +295,7 @@ void BulletVehicle::read_contacts() {
   for (int m = 0; m < touches.getNumManifolds(); ++m) {
     const btPersistentManifold& manifold = *touches.getManifoldByIndexInternal(m);
     const bool first = manifold.getBody0() == chassis_.get();
+    if (!first && manifold.getBody1() != chassis_.get()) continue;  // the arm's
     for (int c = 0; c < manifold.getNumContacts(); ++c) {
       const btManifoldPoint& point = manifold.getContactPoint(c);
       const int part = first ? point.m_index0 : point.m_index1;
@@ -318,11 +345,12 @@ void BulletVehicle::read_state() {
   state_.pitch = std::asin(std::clamp<double>(-basis[2][0], -1, 1));
   const btVector3 ground = chassis_->getWorldTransform() * btVector3(0, 0, -robot_.mass_height);
   state_.z = ground.z();
+  if (arm_) state_.arm.position = arm_->position();
 }
 
 /// Counts the time at rest, and parks after enough of it.
 void BulletVehicle::update_parking() {
-  const bool still = wanted_ == algo::Twist2{} && target_ == algo::Twist2{} &&
+  const bool still = arm_rests() && wanted_ == algo::Twist2{} && target_ == algo::Twist2{} &&
                      std::abs(state_.twist.v) < kStillSpeed &&
                      std::abs(state_.twist.omega) < kStillTurn &&
                      (level_ || (chassis_->getLinearVelocity().length() < kSlowSlide &&

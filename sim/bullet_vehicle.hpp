@@ -1,11 +1,13 @@
 // sim/bullet_vehicle.hpp: a base with mass, friction and contacts, in a Bullet world of its own.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include <btBulletDynamicsCommon.h>
 
+#include "sim/bullet_arm.hpp"
 #include "sim/bullet_ptr.hpp"
 #include "sim/drive_constraint.hpp"
 #include "sim/physics.hpp"
@@ -26,9 +28,14 @@ class BulletVehicle final : public VehicleModel {
   void reset(const algo::Pose2& start) override;
   void stand_on(const ObstacleSet& ground) override;
   void drive(const algo::Twist2& command, const ObstacleSet& obstacles, PoseTrail& trail) override;
+  void turn_joints(const algo::JointValues& rates) override { joint_rates_ = rates; }
   void halt() noexcept override {
+    joint_rates_ = {};
     if (!robot_.sensors.inclinometer) target_ = {};
   }
+  /// Null for a robot without an arm.
+  const BulletArm* arm() const { return arm_.get(); }
+  const btTransform& chassis_W() const { return chassis_->getWorldTransform(); }
   /// Turns gravity with the robot so that a level floor acts as a slope: at each heading the robot
   /// feels the roll `roll` [rad]. For experiments.
   void lean(double roll) { lean_ = roll; }
@@ -53,6 +60,8 @@ class BulletVehicle final : public VehicleModel {
   void build_chassis();
   void settle();
   void substep();
+  void read_arm(const algo::JointValues& before);
+  bool arm_rests() const;
   void read_contacts();
   void read_state();
   void update_parking();
@@ -64,11 +73,13 @@ class BulletVehicle final : public VehicleModel {
   Substeps substeps_;
   VehicleState state_{};
 
-  Physics physics_{};
+  Physics physics_;
   std::vector<BulletPtr<btCollisionShape>> parts_{};  // of the chassis: hull, supports, casters
   BulletPtr<btCompoundShape> chassis_shape_{};
   BulletPtr<btRigidBody> chassis_{};
   BulletPtr<DriveConstraint> drive_{};
+  std::unique_ptr<BulletArm> arm_{};
+  algo::JointValues joint_rates_{};
 
   algo::Twist2 wanted_{};
   algo::Twist2 target_{};  // wanted_ after the acceleration limits

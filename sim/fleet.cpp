@@ -37,6 +37,7 @@ Scenario scenario_of(const Scenario& scenario, std::size_t k) {
   const OtherRobot& robot = scenario.robots[k - 1];
   own.start = robot.start;
   own.robot = robot.robot.value_or(scenario.robot);
+  own.joints.reset();  // those are of the first robot
   return own;
 }
 

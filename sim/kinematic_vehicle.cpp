@@ -1,6 +1,8 @@
 // sim/kinematic_vehicle.cpp: exact arcs, one distance query per tick.
 #include "sim/kinematic_vehicle.hpp"
 
+#include <algorithm>
+
 #include "algo/diff_drive.hpp"
 
 namespace sim {
@@ -11,12 +13,46 @@ KinematicVehicle::KinematicVehicle(const RobotModel& robot, double period, bool 
       period_(period),
       substeps_(period),
       axle_(axle_of(robot)),
-      with_ramps_(with_ramps) {}
+      with_ramps_(with_ramps) {
+  if (robot.arm) reach_.emplace(robot);
+}
 
 void KinematicVehicle::reset(const algo::Pose2& start) {
   state_ = {};
   state_.pose_W = start;
   target_ = {};
+  joint_rates_ = {};
+  if (robot_.arm) state_.arm.position = robot_.arm->begins();
+}
+
+algo::Pose2 KinematicVehicle::move_arm(const algo::Pose2& from,
+                                       const algo::Pose2& to,
+                                       const ObstacleSet& obstacles) {
+  const algo::JointValues rates =
+      within_limits(joint_rates_, state_.arm.position, *robot_.arm, period_);
+  const algo::ArmJoints stays = algo::joints_of(state_.arm.position);
+  const algo::ArmJoints turned = stays + period_ * algo::joints_of(rates);
+  const auto at = [&](const algo::Pose2& base, const algo::ArmJoints& q) {
+    return reach_->nearest(algo::body_joints(base, q), obstacles);
+  };
+  const double least = std::min(0.0, at(from, stays).distance);
+  state_.arm.touched.reset();
+  state_.arm.rate = {};
+  struct Motion {
+    const algo::Pose2& base;
+    const algo::ArmJoints& q;
+  };
+  for (const Motion& motion : {Motion{to, turned}, Motion{to, stays}, Motion{from, turned}}) {
+    const NearestPart there = at(motion.base, motion.q);
+    if (there.distance < least) {
+      state_.arm.touched = there.link;
+      continue;
+    }
+    state_.arm.position = algo::values_of(motion.q);
+    if (&motion.q == &turned) state_.arm.rate = rates;
+    return motion.base;
+  }
+  return from;
 }
 
 void KinematicVehicle::drive(const algo::Twist2& command,
@@ -39,6 +75,14 @@ void KinematicVehicle::drive(const algo::Twist2& command,
     twist.v = 0;
     target_.v = 0;
     to = algo::integrate_arc(from, twist, period_, axle_);
+  }
+  if (reach_) {
+    const algo::Pose2 moved = move_arm(from, to, obstacles);
+    if (moved != to) {
+      to = moved;
+      twist = {};
+      target_ = {};
+    }
   }
   for (std::size_t k = 1; k < substeps_.count; ++k) {
     trail.push(algo::integrate_arc(from, twist, static_cast<double>(k) * substeps_.length, axle_));

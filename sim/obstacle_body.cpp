@@ -4,7 +4,7 @@
 namespace sim {
 
 BulletPtr<btCollisionShape> obstacle_shape(const algo::Obstacle& obstacle, double margin) {
-  const double half = obstacle.height / 2;
+  const double half = (obstacle.height - obstacle.bottom) / 2;
   BulletPtr<btCollisionShape> shape;
   if (const auto* cylinder = std::get_if<algo::Cylinder>(&obstacle.shape)) {
     shape = make_bullet<btCylinderShapeZ>(btVector3(cylinder->radius, cylinder->radius, half));
@@ -28,7 +28,7 @@ BulletPtr<btCollisionShape> obstacle_shape(const algo::Obstacle& obstacle, doubl
 btTransform obstacle_transform(const algo::Obstacle& obstacle) {
   const algo::Pose2& pose = obstacle.pose_W;
   return btTransform(btQuaternion(btVector3(0, 0, 1), pose.heading),
-                     btVector3(pose.x, pose.y, obstacle.height / 2));
+                     btVector3(pose.x, pose.y, (obstacle.bottom + obstacle.height) / 2));
 }
 
 }  // namespace sim

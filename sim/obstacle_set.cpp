@@ -65,7 +65,9 @@ void ObstacleSet::measure(Item& item) {
 }
 
 void ObstacleSet::add(const algo::Obstacle& obstacle) {
-  items_.push_back({.obstacle = obstacle, .ground = algo::is_ground(obstacle)});
+  const bool ground = algo::is_ground(obstacle);
+  items_.push_back(
+      {.obstacle = obstacle, .ground = ground, .passed = ground || obstacle.bottom > tall_});
   measure(items_.back());
   if (items_.back().ground) ++grounds_;
 }
@@ -107,7 +109,7 @@ bool ObstacleSet::may_reach(std::size_t index, const algo::Vec2& p_W, double rea
 double ObstacleSet::distance(const algo::Vec2& p_W) const {
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < items_.size(); ++i) {
-    if (items_[i].hidden || items_[i].ground) continue;
+    if (items_[i].hidden || items_[i].passed) continue;
     // No point of it is nearer than its circle. Inside a circle, every distance must be computed.
     if (nearest > 0 && !may_reach(i, p_W, nearest)) continue;
     nearest = std::min(nearest, distance(i, p_W));
@@ -140,7 +142,7 @@ double ObstacleSet::clearance(const Hull& hull, const algo::Pose2& pose_W) const
   if (hull.is_disc()) return distance(pose_W.position()) - hull.radius;
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < items_.size(); ++i) {
-    if (items_[i].ground) continue;
+    if (items_[i].passed) continue;
     // No point of it is nearer than its circle is to the rectangle's circle.
     if (!may_reach(i, pose_W.position(), std::max(nearest, 0.0) + hull.radius)) continue;
     nearest = std::min(nearest, clearance(items_[i], hull, pose_W));

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -16,9 +17,13 @@ using algo::Hull;
 
 /// Obstacles in the order of addition, each with its outline and bounding circle. A distance costs
 /// little even with a thousand of them, and allocates nothing. Distances to all of them leave out
-/// ramps and trenches, which a robot drives over; those to one of them do not.
+/// ramps and trenches, which a robot drives over, and what hangs above the robot; those to one of
+/// them do not.
 class ObstacleSet {
  public:
+  /// For a robot of `tall` [m].
+  explicit ObstacleSet(double tall = std::numeric_limits<double>::infinity()) : tall_(tall) {}
+
   std::size_t size() const { return items_.size(); }
   const algo::Obstacle& operator[](std::size_t index) const { return items_[index].obstacle; }
   /// Index of obstacle `id`.
@@ -29,7 +34,7 @@ class ObstacleSet {
   void remove(std::size_t index);
   /// Distances ignore obstacle `index` until it is moved again.
   void hide(std::size_t index) { items_[index].hidden = true; }
-  void clear() { *this = {}; }
+  void clear() { *this = ObstacleSet(tall_); }
 
   /// True if a ramp or a trench is among them: the ground is not level.
   bool has_ground() const { return grounds_ > 0; }
@@ -59,10 +64,12 @@ class ObstacleSet {
     std::vector<algo::Vec2> outline_W{};  // empty for a cylinder
     bool hidden = false;
     bool ground = false;
+    bool passed = false;  // the robot drives over it or under it
   };
   static void measure(Item& item);
   double clearance(const Item& item, const Hull& hull, const algo::Pose2& pose_W) const;
 
+  double tall_;
   std::vector<Item> items_{};
   std::size_t grounds_ = 0;  // of them, ramps and trenches
 };

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
+
 #include "sim/obstacle_body.hpp"
 
 namespace sim {
@@ -99,9 +102,16 @@ void Physics::build() {
   dispatcher_ = make_bullet<Dispatcher>(configuration_.get());
   dispatcher_->setNearCallback(meet);
   broadphase_ = make_bullet<btDbvtBroadphase>();
-  solver_ = make_bullet<btSequentialImpulseConstraintSolver>();
-  world_ = make_bullet<btDiscreteDynamicsWorld>(
-      dispatcher_.get(), broadphase_.get(), solver_.get(), configuration_.get());
+  if (bodies_kind_ == Bodies::Jointed) {
+    auto solver = make_bullet<btMultiBodyConstraintSolver>();
+    world_ = make_bullet<btMultiBodyDynamicsWorld>(
+        dispatcher_.get(), broadphase_.get(), solver.get(), configuration_.get());
+    solver_ = std::move(solver);
+  } else {
+    solver_ = make_bullet<btSequentialImpulseConstraintSolver>();
+    world_ = make_bullet<btDiscreteDynamicsWorld>(
+        dispatcher_.get(), broadphase_.get(), solver_.get(), configuration_.get());
+  }
   world_->setGravity(btVector3(0, 0, -kGravity));
   world_->setForceUpdateAllAabbs(false);
   world_->getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
@@ -139,7 +149,8 @@ void Physics::set_down(btRigidBody& body) {
 }
 
 void Physics::choose_iterations() {
-  world_->getSolverInfo().m_numIterations = grounds_ > 0 ? kMoreIterations : kIterations;
+  const bool many = grounds_ > 0 || bodies_kind_ == Bodies::Jointed;
+  world_->getSolverInfo().m_numIterations = many ? kMoreIterations : kIterations;
 }
 
 void Physics::added(const algo::Obstacle& obstacle) {
@@ -166,7 +177,8 @@ void Physics::added(const algo::Obstacle& obstacle) {
     choose_iterations();
   } else {
     add(obstacle_shape(obstacle, kMargin),
-        btTransform(btQuaternion::getIdentity(), btVector3(0, 0, obstacle.height / 2)));
+        btTransform(btQuaternion::getIdentity(),
+                    btVector3(0, 0, (obstacle.bottom + obstacle.height) / 2)));
   }
   if (trench) holes_.emplace_back(obstacle);
   place(body, obstacle.pose_W);

@@ -25,7 +25,10 @@ class Physics {
   static constexpr double kMargin = 0.001;  // [m] the default of 0.04 rounds small edges off
   static constexpr double kGravity = 9.81;  // [m/s2]
 
-  Physics() { build(); }
+  /// What the world can hold besides rigid bodies.
+  enum class Bodies : std::uint8_t { Rigid, Jointed };
+
+  explicit Physics(Bodies bodies = Bodies::Rigid) : bodies_kind_(bodies) { build(); }
   ~Physics();
   Physics(const Physics&) = delete;
   Physics& operator=(const Physics&) = delete;
@@ -76,6 +79,7 @@ class Physics {
                    const btDispatcherInfo& info);
   void choose_iterations();
 
+  Bodies bodies_kind_;
   // In order of construction; destroyed in reverse.
   BulletPtr<btDefaultCollisionConfiguration> configuration_{};
   BulletPtr<Dispatcher> dispatcher_{};

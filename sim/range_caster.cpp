@@ -50,7 +50,7 @@ void RangeCaster::add(const algo::Obstacle& obstacle) {
   if (std::holds_alternative<algo::Trench>(obstacle.shape)) return;  // below all planes
   const auto* ramp = std::get_if<algo::Ramp>(&obstacle.shape);
   const double top = ramp == nullptr ? obstacle.height : std::max(ramp->low, obstacle.height);
-  if (top < plane_height_) return;
+  if (top < plane_height_ || obstacle.bottom > plane_height_) return;
   const std::size_t index = obstacles_.size();
   obstacles_.push_back(obstacle);
   ids_.push_back(obstacle.id);

@@ -17,7 +17,8 @@ namespace {
 constexpr double kCasterTouching = 0.005;  // [m] a caster raised by more carries no load
 constexpr double kFirmly = 0.01;  // [m] from the centre of mass to the line of two supports
 constexpr int kDirections = 72;
-constexpr double kRoundOff = 1e-9;  // [s] of a product of periods
+constexpr double kFoldedRoom = 0.02;  // [m]
+constexpr double kRoundOff = 1e-9;    // [s] of a product of periods
 
 /// True if the supports extend beyond R in every direction.
 bool stands(const RobotModel& robot) {
@@ -89,6 +90,25 @@ void Machine::set_disc(double radius_m) {
   hull_width = 2 * radius_m;
 }
 
+namespace {
+
+/// Of the arm on its base; the folded arm must be clear of the robot.
+std::optional<std::string> arm_defect(const RobotModel& robot, const ArmModel& arm) {
+  if (auto problem = defect(arm)) return "arm/" + *problem;
+  if (arm.shoulder_R.z() <= robot.hull_high) return "arm/mount/z: must be above the hull";
+  const algo::MobileArm body = body_of(arm, robot.radius, robot.hull_high);
+  const algo::BodyFrames frames = body_frames(body, algo::body_joints({}, body.folded));
+  const double room = self_clearance(body, frames);
+  if (room < kFoldedRoom) {
+    return "arm/rest_deg: the folded arm would be " +
+           std::to_string(static_cast<int>(1000 * room)) +
+           " mm from the robot itself; 20 mm are needed";
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 std::optional<std::string> defect(const RobotModel& robot) {
   if (!(robot.hull_low < robot.hull_high)) return "hull/high: must be above hull/low";
   if (robot.wheels.empty()) return "wheels: there must be one on each side at least";
@@ -103,7 +123,7 @@ std::optional<std::string> defect(const RobotModel& robot) {
     return "casters: the robot would tip over; its wheels and casters must surround the middle "
            "of the hull";
   }
-  return std::nullopt;
+  return robot.arm ? arm_defect(robot, *robot.arm) : std::nullopt;
 }
 
 namespace {
@@ -111,6 +131,14 @@ namespace {
 std::optional<algo::FloorSensors> floor_of(const Sensors& sensors) {
   if (!sensors.floor) return std::nullopt;
   return geometry_of(*sensors.floor);
+}
+
+std::optional<algo::ArmSpec> arm_of(const RobotModel& robot) {
+  if (!robot.arm) return std::nullopt;
+  algo::ArmSpec arm = *robot.arm;
+  arm.base_height = robot.hull_high;
+  if (!robot.sensors.lasers.empty()) arm.scan_height = robot.sensors.lasers.front().height;
+  return arm;
 }
 
 }  // namespace
@@ -133,7 +161,8 @@ algo::RobotSpec spec_of(const RobotModel& robot, double period) {
           .stance = robot.sensors.inclinometer ? std::optional(stance_of(robot)) : std::nullopt,
           .line = robot.sensors.line_camera,
           .floor = floor_of(robot.sensors),
-          .climbs = robot.climbs};
+          .climbs = robot.climbs,
+          .arm = arm_of(robot)};
 }
 
 algo::Stance stance_of(const RobotModel& robot) {

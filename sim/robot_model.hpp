@@ -7,6 +7,7 @@
 
 #include "algo/robot.hpp"
 #include "algo/units.hpp"
+#include "sim/arm_model.hpp"
 #include "sim/obstacle_set.hpp"
 #include "sim/sensor_configs.hpp"
 
@@ -43,6 +44,8 @@ struct Machine {
   /// If they were measured (`tautline climbs`).
   std::optional<algo::ClimbLimits> climbs =
       algo::ClimbLimits{0.003, 0.058, 0.270, 0, 42 * algo::units::kRadiansPerDegree};
+
+  std::optional<ArmModel> arm{};
 
   /// Makes the hull a box; `radius` becomes that of the circle through its corners.
   void set_box(double length, double width);

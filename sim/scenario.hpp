@@ -68,6 +68,9 @@ struct Scenario {
   std::optional<algo::SetGoal> goal{};
   std::vector<algo::SetGoal> waypoints{};  // on the way to the goal, in order
   bool loop = false;  // a live robot drives the way without end; without waypoints, to and fro
+  std::optional<algo::SetHandGoal> hand_goal{};  // of a robot with an arm, instead of the goal
+  bool carry = false;                            // to the goal with the arm as it is
+  std::optional<algo::JointValues> joints{};     // [rad] at the start; absent: at rest
   DriveConfig drive{};
   std::vector<algo::Obstacle> obstacles{};
   std::vector<OtherRobot> robots{};  // besides the first, which the other fields describe

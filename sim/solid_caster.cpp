@@ -144,6 +144,7 @@ void SolidCaster::meet(const Solid& solid,
   if (!may_meet(solid, from, way, hit.range)) return;
   const auto span = over(solid, from, way);
   if (!span || span->to <= 0 || span->from >= hit.range) return;
+  if (solid.obstacle.bottom > 0) return meet_raised(solid, *span, from, way, hit);
   // Height above the top, along the ray.
   const double start = from.z() - solid.top - solid.slope_W.dot(from.head<2>());
   const double rate = way.z() - solid.slope_W.dot(way.head<2>());
@@ -159,6 +160,34 @@ void SolidCaster::meet(const Solid& solid,
     hit.range = met;
     hit.normal_W = algo::Vec3(-solid.slope_W.x(), -solid.slope_W.y(), 1).normalized();
   }
+  hit.of = &solid.obstacle;
+  hit.number = static_cast<std::uint32_t>(&solid - solids_.data());
+}
+
+/// The same for a solid that does not stand on the floor: between two level planes.
+void SolidCaster::meet_raised(const Solid& solid,
+                              const Span& span,
+                              const algo::Vec3& from,
+                              const algo::Vec3& way,
+                              SolidHit& hit) const {
+  double enters = span.from;
+  double leaves = span.to;
+  algo::Vec3 normal(span.normal_W.x(), span.normal_W.y(), 0);
+  if (std::abs(way.z()) < kAlong) {
+    if (from.z() < solid.obstacle.bottom || from.z() > solid.top) return;
+  } else {
+    const double low = (solid.obstacle.bottom - from.z()) / way.z();
+    const double high = (solid.top - from.z()) / way.z();
+    if (std::min(low, high) > enters) {
+      enters = std::min(low, high);
+      normal = {0, 0, way.z() > 0 ? -1.0 : 1.0};
+    }
+    leaves = std::min(leaves, std::max(low, high));
+  }
+  enters = std::max(enters, 0.0);
+  if (enters >= leaves || enters >= hit.range) return;
+  hit.range = enters;
+  hit.normal_W = normal;
   hit.of = &solid.obstacle;
   hit.number = static_cast<std::uint32_t>(&solid - solids_.data());
 }

@@ -61,6 +61,11 @@ class SolidCaster {
                        const algo::Vec3& way,
                        double within);
   void meet(const Solid& solid, const algo::Vec3& from, const algo::Vec3& way, SolidHit& hit) const;
+  void meet_raised(const Solid& solid,
+                   const Span& span,
+                   const algo::Vec3& from,
+                   const algo::Vec3& way,
+                   SolidHit& hit) const;
   void meet_floor(const algo::Vec3& from, const algo::Vec3& way, SolidHit& hit) const;
   std::size_t find(std::uint32_t id) const;
 

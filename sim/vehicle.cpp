@@ -17,10 +17,9 @@ double towards(double now, double wanted, double most) {
 
 }  // namespace
 
-Substeps::Substeps(double period) {
-  constexpr double kRate = 240;       // [Hz]
+Substeps::Substeps(double period, double rate) {
   constexpr double kRounding = 1e-9;  // 25 ms are six steps, not seven
-  count = static_cast<std::size_t>(std::max(1.0, std::ceil(kRate * period - kRounding)));
+  count = static_cast<std::size_t>(std::max(1.0, std::ceil(rate * period - kRounding)));
   length = period / static_cast<double>(count);
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "algo/arm_spec.hpp"
 #include "algo/obstacle.hpp"
 #include "algo/robot.hpp"
 #include "algo/types.hpp"
@@ -13,6 +14,13 @@
 #include "sim/robot_model.hpp"
 
 namespace sim {
+
+/// The joints of a robot's arm at the end of a tick.
+struct ArmState {
+  algo::JointValues position{};             // [rad]
+  algo::JointValues rate{};                 // [rad/s] mean in the tick
+  std::optional<algo::BodyLink> touched{};  // in this tick, by something or by another part
+};
 
 /// The state of a vehicle at the end of a tick.
 struct VehicleState {
@@ -28,14 +36,16 @@ struct VehicleState {
   /// [rad] Bearing in R of the newest contact with the upright end of a ramp or trench, in this
   /// tick.
   std::optional<double> ground_contact{};
+  ArmState arm{};       // of a robot with an arm
   bool scrape = false;  // the hull touched the ground or an obstacle, in whatever direction
   algo::Tilt tilt() const { return {z, roll, pitch}; }
   bool overturned() const { return algo::is_overturned(roll, pitch); }
 };
 
-/// Divides a tick into equal physics steps, at 240 Hz or slightly faster.
+/// Divides a tick into equal physics steps, at `rate` or slightly faster.
 struct Substeps {
-  explicit Substeps(double period);
+  static constexpr double kRate = 240;  // [Hz]
+  explicit Substeps(double period, double rate = kRate);
   std::size_t count = 1;
   double length = 0;  // [s]
 };
@@ -64,6 +74,9 @@ class VehicleModel {
   virtual void drive(const algo::Twist2& command,
                      const ObstacleSet& obstacles,
                      PoseTrail& trail) = 0;
+  /// Turns the joints of the robot's arm at `rates` [rad/s], within their limits, from the next
+  /// drive() on.
+  virtual void turn_joints(const algo::JointValues& /*rates*/) {}
   /// Stops driving at once, without the ramp. A vehicle that would turn over by that only stops
   /// wanting to drive: it brakes by its ramp.
   virtual void halt() noexcept = 0;

@@ -41,7 +41,9 @@ World::World(const Scenario& scenario, std::uint64_t seed)
       seed_(seed),
       robot_(limited(scenario.robot, scenario.drive)),
       hull_(hull_of(robot_)),
+      obstacles_(robot_.hull_high),
       errors_(scenario.drive, seed) {
+  if (robot_.arm) robot_.arm->start = scenario_.joints;
   check();
   spec_ = spec_of(robot_, scenario_.period);
   spec_.command_delay = scenario_.period * scenario_.drive.delay_ticks;
@@ -53,6 +55,7 @@ World::World(const Scenario& scenario, std::uint64_t seed)
   for (const SensorConfig& config : robot_.sensors.further) {
     spec_.channels.push_back(channel_of(config));
   }
+  if (robot_.arm) reach_.emplace(robot_);
   sight_ = sight();
   start();
 }
@@ -67,6 +70,9 @@ void World::check() const {
     throw std::invalid_argument("The scenario's start must be finite numbers.");
   }
   checked(robot_, "The scenario's robot");
+  if (scenario_.joints && !robot_.arm) {
+    throw std::invalid_argument("The scenario's joints need a robot with an arm.");
+  }
   checked(scenario_.drive, "The scenario's drive");
   if (robot_.sensors.bumpers > kMostBumpers) {
     throw std::invalid_argument("The scenario's bumpers must be 0 to 8.");
@@ -105,7 +111,8 @@ void World::start() {
   double memory = 0;
   for (const auto& sensor : sensors_) memory = std::max(memory, sensor->memory());
   start_localization(pose);
-  const Substeps substeps(scenario_.period);
+  const bool jointed = robot_.arm && scenario_.physics == PhysicsKind::Bullet;
+  const Substeps substeps(scenario_.period, jointed ? robot_.arm->step_rate : Substeps::kRate);
   trail_ = std::make_unique<PoseTrail>(substeps.length, memory + scenario_.period);
   trail_->reset(pose, 0);
 
@@ -164,6 +171,11 @@ void World::advance() {
   used_ = true;
   ++tick_;
   follow_paths(static_cast<double>(tick_) * scenario_.period);
+  if (robot_.arm) {
+    algo::JointValues rates{};
+    std::copy_n(command_.joint_rates.begin(), rates.size(), rates.begin());
+    vehicle_->turn_joints(rates);
+  }
   vehicle_->drive(errors_.act(command_.base), obstacles_, *trail_);
 }
 
@@ -224,6 +236,7 @@ void World::sense_motion(algo::Observation& observation) {
   encoders_ = {now, left, right};
   observation.odometry = errors_.report(odometry_);
   if (robot_.sensors.encoders) observation.encoders = encoders_;
+  if (robot_.arm) observation.joints = algo::JointReading{now, state.arm.position, state.arm.rate};
   sense_turn(observation);
 }
 
@@ -253,13 +266,26 @@ std::optional<algo::GroundTruth> World::ground_truth() const {
   const double distance = obstacles_.distance(state.pose_W.position());
   const double clearance =
       hull_.half_length > 0 ? obstacles_.clearance(hull_, state.pose_W) : distance - robot_.radius;
-  return algo::GroundTruth{.pose = state.pose_W,
-                           .obstacle_distance = distance,
-                           .clearance = clearance,
-                           .collided = contact() || clearance < 0,
-                           .tilt = solids_ ? std::optional(state.tilt()) : std::nullopt,
-                           .overturned = state.overturned(),
-                           .fallen = state.fallen};
+  algo::GroundTruth truth{.pose = state.pose_W,
+                          .obstacle_distance = distance,
+                          .clearance = clearance,
+                          .collided = contact() || clearance < 0,
+                          .tilt = solids_ ? std::optional(state.tilt()) : std::nullopt,
+                          .overturned = state.overturned(),
+                          .fallen = state.fallen};
+  if (reach_) add_arm(truth);
+  return truth;
+}
+
+/// The nearest part of a robot with an arm counts.
+void World::add_arm(algo::GroundTruth& truth) const {
+  const VehicleState& state = vehicle_->state();
+  const NearestPart arm = reach_->nearest(state, obstacles_);
+  if (truth.collided) truth.touched = algo::BodyLink::Base;
+  if (arm.distance < 0) truth.touched = arm.link;
+  if (state.arm.touched) truth.touched = state.arm.touched;
+  truth.collided = truth.touched.has_value();
+  truth.clearance = std::min(truth.clearance, arm.distance);
 }
 
 }  // namespace sim

@@ -12,6 +12,7 @@
 
 #include "algo/local_localization.hpp"
 #include "algo/robot.hpp"
+#include "sim/arm_reach.hpp"
 #include "sim/drive_errors.hpp"
 #include "sim/gyro_model.hpp"
 #include "sim/obstacle_set.hpp"
@@ -103,6 +104,7 @@ class World final : public algo::Robot, public algo::Editing {
   void sense(algo::Observation& observation);
   void sense_motion(algo::Observation& observation);
   void sense_turn(algo::Observation& observation);
+  void add_arm(algo::GroundTruth& truth) const;
 
   /// An obstacle that represents a near robot; reused for any robot.
   struct Slot {
@@ -119,7 +121,8 @@ class World final : public algo::Robot, public algo::Editing {
   Hull hull_{};
   algo::RobotSpec spec_{};
 
-  ObstacleSet obstacles_{};
+  ObstacleSet obstacles_;
+  std::optional<ArmReach> reach_{};        // of a robot with an arm
   std::unique_ptr<SolidCaster> solids_{};  // all obstacles, while the ground is not level
   std::vector<std::uint32_t> movers_{};    // ids of the obstacles that follow a path
   std::unique_ptr<VehicleModel> vehicle_{};

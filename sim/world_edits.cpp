@@ -82,11 +82,14 @@ std::optional<std::string> World::refusal(const algo::Obstacle& obstacle) const 
     if (starting_ || !under_robot(obstacle)) return std::nullopt;
     return name_of(obstacle) + " would be under the robot.";
   }
-  ObstacleSet alone;
+  ObstacleSet alone(robot_.hull_high);
   alone.add(obstacle);
   const double distance = alone.clearance(hull_, vehicle_->state().pose_W);
   if (distance < 0) {
     return name_of(obstacle) + " would overlap the robot: " + metres(-distance) + " too close.";
+  }
+  if (reach_ && reach_->nearest(vehicle_->state(), alone).distance < 0) {
+    return name_of(obstacle) + " would overlap the robot's arm.";
   }
   return std::nullopt;
 }

@@ -88,6 +88,7 @@ std::map<std::string, Rule> make_rules() {
                       "algo/mapping",
                       "algo/teleop",
                       "algo/terrain",
+                      "algo/arm",
                       "algo/pipeline"};
   const Rooms below_run = methods + "sim" + "drivers";
   const Rooms below_record = below_run + "server/run" + "db";
@@ -107,6 +108,7 @@ std::map<std::string, Rule> make_rules() {
       {"algo/mapping", method({"algo"})},
       {"algo/teleop", method({"algo"})},
       {"algo/terrain", method({"algo", "algo/filter"})},
+      {"algo/arm", method({"algo"})},
       {"algo/pipeline",
        method({"algo",
                "algo/filter",
@@ -114,9 +116,10 @@ std::map<std::string, Rule> make_rules() {
                "algo/teleop",
                "algo/terrain",
                "algo/full_strip",
-               "algo/baselines"})},
+               "algo/baselines",
+               "algo/arm"})},
       {"sim",
-       {{"algo", "algo/terrain"},
+       {{"algo", "algo/terrain", "algo/arm"},
         R"(Eigen/.*|fmt/[a-z]+\.h|bt[A-Za-z]+\.h|(LinearMath|BulletCollision|BulletDynamics)/.*)",
         ""}},
       {"drivers",

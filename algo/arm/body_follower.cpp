@@ -14,6 +14,7 @@ constexpr double kStopsWithin = 0.003;  // [m] of its goal, along its way, the b
 constexpr double kSameHeading = 0.02;   // [rad] a smaller turn takes the base no time
 constexpr double kTurnFirst = 0.6;      // [rad] farther off its way the base turns on the spot
 constexpr double kSettle = 0.5;         // [s] in which an error of heading or place is driven away
+constexpr double kBrakes = 0.7;         // of its deceleration that a base plans to use
 constexpr double kLook = 0.1;           // [s] between two looks at the next motion
 constexpr double kSameRoom = 1e-6;      // [m]
 constexpr double kSpeedMemory = 1;      // [s] of the speed that predicts when the body gets where
@@ -52,7 +53,9 @@ Twist2 base_twist(const Pose2& pose,
   const Vec2 way = target.carrot_W - pose.position();
   const double error = wrap_angle(std::atan2(way.y(), way.x()) - pose.heading);
   if (std::abs(error) > kTurnFirst) return {0, turning(error)};
-  return {std::min(limits.max_v, target.left / kSettle) * std::cos(error), turning(error)};
+  const double brakes = std::sqrt(2 * kBrakes * limits.max_acceleration * target.left);
+  const double v = std::min({limits.max_v, target.left / kSettle, brakes});
+  return {v * std::cos(error), turning(error)};
 }
 
 /// Of the joints on the strip.

@@ -12,6 +12,8 @@ struct BodyLimits {
   double max_v = 0.5;      // [m/s]
   double max_omega = 0.8;  // [rad/s]
   double max_rate = 1.2;   // [rad/s] of each joint
+  // [m/s2] of the base; infinite: it stops at once.
+  double max_acceleration = std::numeric_limits<double>::infinity();
 };
 
 /// How a body follows its strip.
@@ -50,6 +52,8 @@ class BodyFollower {
   /// One tick of `dt` [s] for a body at `now`. Allocates nothing.
   BodyCommand update(const BodyJoints& now, std::span<const Solid> solids, double dt);
 
+  /// In one tick.
+  void set_sweeps(int sweeps) { rules_.sweeps = sweeps; }
   const BodyStrip& strip() const { return strip_; }
 
  private:

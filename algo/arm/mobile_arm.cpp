@@ -35,10 +35,21 @@ BodyJoints body_joints(const Pose2& base_W, const ArmJoints& q) {
   return body;
 }
 
-std::string_view name(BodyLink link) {
-  constexpr std::array<std::string_view, kBodyLinks> kNames{
-      "base", "mast", "upper_arm", "forearm", "hand"};
-  return kNames[static_cast<std::size_t>(link)];
+MobileArm mobile_arm(const ArmSpec& arm, double base_radius) {
+  MobileArm body;
+  body.arm = {.upper_arm = arm.upper_arm,
+              .elbow_offset = arm.elbow_offset,
+              .forearm = arm.forearm,
+              .hand = arm.hand,
+              .limits = joints_of(arm.limits)};
+  body.mount_R =
+      Eigen::Translation3d(arm.shoulder_R) * Eigen::AngleAxisd(arm.heading, Vec3::UnitZ());
+  body.base_radius = base_radius;
+  body.base_height = arm.base_height;
+  body.mast_radius = arm.mast_radius;
+  body.link_radius = arm.link_radius;
+  body.folded = joints_of(arm.rest);
+  return body;
 }
 
 BodyFrames body_frames(const MobileArm& body, const BodyJoints& q) {

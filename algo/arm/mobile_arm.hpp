@@ -22,20 +22,23 @@ inline ArmJoints arm_of(const BodyJoints& body) {
   return body.tail<static_cast<int>(kArmJoints)>();
 }
 
+/// The arm folded over the base: nothing of it stands out beyond the base's circle.
+inline ArmJoints folded_arm() {
+  return joints_of(ArmSpec{}.rest);
+}
+
 /// Like the Silvermate. Its lengths are chosen.
 struct MobileArm {
   ArmGeometry arm{};
-  Pose3 mount_R{Eigen::Translation3d(0, -0.22, 0.95)};  // frame 0 of the arm
-  double base_radius = 0.35;                            // [m] of an upright cylinder about R
-  double base_height = 0.46;                            // [m]
-  double mast_radius = 0.05;  // [m] of the post that carries the arm, from the base to the shoulder
-  double link_radius = 0.04;  // [m] of the arm's links
+  Pose3 mount_R{Eigen::Translation3d(ArmSpec{}.shoulder_R)};  // frame 0 of the arm
+  double base_radius = 0.35;                                  // [m] of an upright cylinder about R
+  double base_height = ArmSpec{}.base_height;                 // [m]
+  double mast_radius = ArmSpec{}.mast_radius;  // [m] of the post from the base to the shoulder
+  double link_radius = ArmSpec{}.link_radius;  // [m] of the arm's links
+  ArmJoints folded = folded_arm();             // for driving
 };
-
-/// Straight parts that something may touch, in the order of the chain.
-enum class BodyLink : std::uint8_t { Base, Mast, UpperArm, Forearm, Hand };
-inline constexpr std::size_t kBodyLinks = 5;
-std::string_view name(BodyLink link);
+/// `arm` on a base of `base_radius` [m].
+MobileArm mobile_arm(const ArmSpec& arm, double base_radius);
 
 struct BodyFrames {
   Pose3 base_W = Pose3::Identity();

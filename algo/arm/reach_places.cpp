@@ -24,22 +24,37 @@ double reaching_room(const MobileArm& body,
   return clearance(body, body_frames(body, body_joints(place.base_W, place.q)), solids).smallest();
 }
 
+/// Of the arm angle `psi`.
+std::optional<ArmJoints> joints_at_angle(const MobileArm& body,
+                                         const Pose2& base_W,
+                                         const Pose3& hand_in_shoulder,
+                                         std::span<const Solid> solids,
+                                         const ArmPlanRules& rules,
+                                         double psi) {
+  std::optional<ArmJoints> best;
+  double best_margin = 0;
+  for (std::uint8_t bits = 0; bits < ArmBranch::kCount; ++bits) {
+    const auto q = arm_inverse(body.arm, hand_in_shoulder, psi, {bits}, body.folded);
+    if (!q || limit_margin(body.arm, *q) < best_margin) continue;
+    if (!is_clear(body, body_joints(base_W, *q), solids, rules)) continue;
+    best = q;
+    best_margin = limit_margin(body.arm, *q);
+  }
+  return best;
+}
+
 double missing(double room, double margin) {
   return std::max(0.0, margin + kAmple - room);
 }
 
 }  // namespace
 
-ArmJoints folded_arm() {
-  ArmJoints q;
-  q << -0.38, 1.57, -0.40, -1.39, 0, 0, 0;
-  return q;
-}
-
 FoldedBody::FoldedBody(const MobileArm& body) : radius_(body.base_radius), height_(0) {
-  const BodyFrames frames = body_frames(body, body_joints({}, folded_arm()));
-  for (const Pose3& frame : frames.arm_W) height_ = std::max(height_, frame.translation().z());
-  height_ += body.link_radius;
+  const BodyFrames frames = body_frames(body, body_joints({}, body.folded));
+  for (const Pose3& frame : frames.arm_W) {
+    height_ = std::max(height_, frame.translation().z() + body.link_radius);
+    radius_ = std::max(radius_, frame.translation().head<2>().norm() + body.link_radius);
+  }
 }
 
 double FoldedBody::room(const Vec2& p_W, std::span<const Solid> solids) const {
@@ -55,15 +70,19 @@ std::optional<ArmJoints> reaching_joints(const MobileArm& body,
                                          const Pose2& base_W,
                                          const Pose3& hand_W,
                                          std::span<const Solid> solids,
-                                         const ArmPlanRules& rules) {
+                                         const ArmPlanRules& rules,
+                                         std::optional<double> arm_angle) {
   const BodyFrames frames = body_frames(body, body_joints(base_W, ArmJoints::Zero()));
   const Pose3 hand_in_shoulder = frames.arm_W.front().inverse() * hand_W;
-  const auto best = best_arm_solution(body.arm, hand_in_shoulder, folded_arm());
+  if (arm_angle) {
+    return joints_at_angle(body, base_W, hand_in_shoulder, solids, rules, *arm_angle);
+  }
+  const auto best = best_arm_solution(body.arm, hand_in_shoulder, body.folded);
   if (!best) return std::nullopt;
   if (is_clear(body, body_joints(base_W, best->q), solids, rules)) return best->q;
   for (std::uint8_t bits = 0; bits < ArmBranch::kCount; ++bits) {
     if (bits == best->branch.bits) continue;
-    const auto other = best_arm_solution(body.arm, hand_in_shoulder, folded_arm(), ArmBranch{bits});
+    const auto other = best_arm_solution(body.arm, hand_in_shoulder, body.folded, ArmBranch{bits});
     if (other && is_clear(body, body_joints(base_W, other->q), solids, rules)) return other->q;
   }
   return std::nullopt;
@@ -85,7 +104,8 @@ std::vector<ReachPlace> reach_places(const MobileArm& body,
       for (int h = 0; h < kPlaceHeadings; ++h) {
         ReachPlace place;
         place.base_W = {at.x(), at.y(), wrap_angle(2 * std::numbers::pi * h / kPlaceHeadings)};
-        const auto q = reaching_joints(body, place.base_W, hand_W, solids, rules.arm);
+        const auto q =
+            reaching_joints(body, place.base_W, hand_W, solids, rules.arm, rules.arm_angle);
         if (!q) continue;
         place.q = *q;
         const double tight = missing(room, rules.base_margin) +

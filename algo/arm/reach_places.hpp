@@ -18,12 +18,12 @@ struct ReachRules {
   double spacing = 0.20;      // [m] between configurations of the drive
   int places = 12;            // of the base, from which the arm tries to reach
   std::size_t skip = 0;       // of the best places, which come last: they have been tried
+  bool here_first = false;    // the base drives only if the hand does not get there from its place
+  std::optional<double> arm_angle{};  // [rad] at the goal; absent: the best one
 };
 
-/// The arm folded over the base: nothing of it stands out beyond the base's circle.
-ArmJoints folded_arm();
-
-/// The body with its arm folded, for driving: an upright cylinder up to the top of the arm.
+/// The body with its arm folded, for driving: an upright cylinder up to the top of the arm, as wide
+/// as base and arm.
 class FoldedBody {
  public:
   explicit FoldedBody(const MobileArm& body);
@@ -38,12 +38,14 @@ class FoldedBody {
 };
 
 /// The joints at which the hand of a body at `base_W` is at `hand_W`, clear of `solids`: of
-/// the best solution of all and of each branch, the first that is clear.
+/// the best solution of all and of each branch, the first that is clear. With `arm_angle` [rad],
+/// the clear one of that angle that is farthest from the limits.
 std::optional<ArmJoints> reaching_joints(const MobileArm& body,
                                          const Pose2& base_W,
                                          const Pose3& hand_W,
                                          std::span<const Solid> solids,
-                                         const ArmPlanRules& rules = {});
+                                         const ArmPlanRules& rules = {},
+                                         std::optional<double> arm_angle = std::nullopt);
 
 struct ReachPlace {
   Pose2 base_W{};

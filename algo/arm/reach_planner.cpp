@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "algo/arm/arm_inverse.hpp"
+#include "algo/arm/elbow_circle.hpp"
 #include "algo/grid_search.hpp"
 
 namespace algo {
@@ -179,6 +181,21 @@ ReachPlan no_plan(std::string why) {
   return plan;
 }
 
+/// Why the hand gets to `hand_W` from no place of the base, or not from `base_W`.
+std::optional<std::string> out_of_reach(const MobileArm& body,
+                                        const Pose3& hand_W,
+                                        const std::optional<Pose2>& base_W) {
+  const BodyFrames frames =
+      body_frames(body, body_joints(base_W.value_or(Pose2{}), ArmJoints::Zero()));
+  Pose3 in_shoulder = frames.arm_W.front().inverse() * hand_W;
+  if (!base_W) {  // where the wrist is straight above or below the shoulder, it is nearest
+    const Vec3 wrist = in_shoulder.translation() - body.arm.hand * in_shoulder.linear().col(2);
+    if (std::abs(wrist.z()) <= wrist_reach(body.arm).farthest) return std::nullopt;
+    in_shoulder.translation() -= Vec3(wrist.x(), wrist.y(), 0);
+  }
+  return unreachable(body.arm, in_shoulder);
+}
+
 }  // namespace
 
 std::string_view name(ReachLeg::Kind kind) {
@@ -204,7 +221,7 @@ ReachPlan plan_reach(const MobileArm& body,
     return no_plan("The robot stands too near to something to move its arm.");
   }
   const auto fold =
-      plan_arm(body, base_of(start), arm_of(start), folded_arm(), solids, seed, nearer);
+      plan_arm(body, base_of(start), arm_of(start), body.folded, solids, seed, nearer);
   if (!fold) return no_plan("The arm finds no way to fold itself at the start.");
   const Vec2 from = start.head<2>();
   std::vector<ReachPlace> places = reach_places(body, from, hand_W, solids, rules);
@@ -220,7 +237,7 @@ ReachPlan plan_reach(const MobileArm& body,
     const auto way = grid.way(from, place.base_W.position());
     if (!way) continue;
     ++tried;
-    const auto reach = plan_arm(body, place.base_W, folded_arm(), place.q, solids, seed, rules.arm);
+    const auto reach = plan_arm(body, place.base_W, body.folded, place.q, solids, seed, rules.arm);
     if (!reach) continue;
     return {.legs = legs_of(
                 start, *fold, straightened(body, *way, solids, rules), place, *reach, rules)};
@@ -236,7 +253,7 @@ std::optional<ReachLeg> plan_last_reach(const MobileArm& body,
                                         std::span<const Solid> solids,
                                         std::uint64_t seed,
                                         const ReachRules& rules) {
-  const auto q = reaching_joints(body, base_of(now), hand_W, solids, rules.arm);
+  const auto q = reaching_joints(body, base_of(now), hand_W, solids, rules.arm, rules.arm_angle);
   if (!q) return std::nullopt;
   const ArmPlanRules nearer = leaving(body, now, solids, rules.arm);
   const auto way = plan_arm(body, base_of(now), arm_of(now), *q, solids, seed, nearer);
@@ -246,6 +263,59 @@ std::optional<ReachLeg> plan_last_reach(const MobileArm& body,
   std::vector<ReachLeg> one = legs.done();
   if (one.empty()) return std::nullopt;
   return std::move(one.front());
+}
+
+ReachPlan plan_return(const MobileArm& body,
+                      const BodyJoints& start,
+                      const SetGoal& goal,
+                      std::span<const Solid> solids,
+                      std::uint64_t seed,
+                      const ReachRules& rules) {
+  const ArmPlanRules nearer = leaving(body, start, solids, rules.arm);
+  const auto fold =
+      plan_arm(body, base_of(start), arm_of(start), body.folded, solids, seed, nearer);
+  if (!fold) return no_plan("The arm finds no way to fold itself where the base stands.");
+  const Vec2 from = start.head<2>();
+  BaseGrid grid(body, (from + goal.position_W) / 2, solids, rules);
+  const auto way = grid.way(from, goal.position_W);
+  if (!way) return no_plan("The base finds no way to its goal.");
+  Legs legs(start);
+  legs.arm(*fold, rules.arm.stride);
+  for (const Vec2& corner : straightened(body, *way, solids, rules)) {
+    legs.drive(corner, rules.spacing);
+  }
+  if (goal.heading) legs.turn(*goal.heading);
+  return {.legs = legs.done()};
+}
+
+ReachPlan plan_carry(const BodyJoints& start, const SetGoal& goal, const ReachRules& rules) {
+  Legs legs(start);
+  legs.drive(goal.position_W, rules.spacing);
+  if (goal.heading) legs.turn(*goal.heading);
+  std::vector<ReachLeg> all = legs.done();
+  if (all.empty()) all.push_back({ReachLeg::Kind::Turn, {start, start}});  // it is there
+  return {.legs = std::move(all)};
+}
+
+ReachPlan answer(const MobileArm& body, const ReachQuestion& question) {
+  if (question.kind == ReachQuestion::Kind::Carry) {
+    return plan_carry(question.now, question.base_goal, question.rules);
+  }
+  if (question.kind == ReachQuestion::Kind::Return) {
+    return plan_return(
+        body, question.now, question.base_goal, question.solids, question.seed, question.rules);
+  }
+  const bool stays = question.kind == ReachQuestion::Kind::Last;
+  const auto place = stays ? std::optional(base_of(question.now)) : std::nullopt;
+  if (auto why = out_of_reach(body, question.hand_W, place)) return no_plan(std::move(*why));
+  if (stays || question.rules.here_first) {
+    auto last = plan_last_reach(
+        body, question.now, question.hand_W, question.solids, question.seed, question.rules);
+    if (last) return {.legs = {std::move(*last)}};
+  }
+  if (stays) return no_plan("From where the base stands, the hand does not get to its goal.");
+  return plan_reach(
+      body, question.now, question.hand_W, question.solids, question.seed, question.rules);
 }
 
 }  // namespace algo

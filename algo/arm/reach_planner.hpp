@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "algo/arm/reach_places.hpp"
+#include "algo/request.hpp"
 
 namespace algo {
 
@@ -47,5 +48,35 @@ std::optional<ReachLeg> plan_last_reach(const MobileArm& body,
                                         std::span<const Solid> solids,
                                         std::uint64_t seed,
                                         const ReachRules& rules = {});
+
+/// Folds the arm and drives the base to `goal`.
+ReachPlan plan_return(const MobileArm& body,
+                      const BodyJoints& start,
+                      const SetGoal& goal,
+                      std::span<const Solid> solids,
+                      std::uint64_t seed,
+                      const ReachRules& rules = {});
+
+/// Straight to `goal` with the arm as it is: the strip of arm and base yields to what is there.
+ReachPlan plan_carry(const BodyJoints& start, const SetGoal& goal, const ReachRules& rules = {});
+
+/// A plan that a body asks for.
+struct ReachQuestion {
+  enum class Kind : std::uint8_t {
+    Whole,   // of the hand's way to its goal
+    Last,    // of its last leg, from where the base stands
+    Return,  // plan_return()
+    Carry,   // plan_carry()
+  };
+  Kind kind = Kind::Whole;
+  BodyJoints now = BodyJoints::Zero();
+  Pose3 hand_W = Pose3::Identity();
+  SetGoal base_goal{};
+  std::vector<Solid> solids{};
+  std::uint64_t seed = 0;
+  ReachRules rules{};
+};
+/// Takes up to some tenths of a second. The same question gets the same answer.
+ReachPlan answer(const MobileArm& body, const ReachQuestion& question);
 
 }  // namespace algo

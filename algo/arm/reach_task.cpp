@@ -27,22 +27,98 @@ ReachTask::ReachTask(const MobileArm& body, const BodyLimits& limits, const Reac
       follower_(body, limits, {}, {.margin = rules.arm.margin - kPlay}) {}
 
 void ReachTask::begin(const BodyJoints& now,
-                      const Pose3& hand_W,
+                      const ReachGoal& goal,
                       std::span<const Solid> solids,
                       std::uint64_t seed) {
-  hand_W_ = hand_W;
+  goal_ = goal;
   seed_ = seed;
   plans_ = 0;
   still_ = 0;
-  if (!plan_anew(now, solids)) give_up();
+  returns_ = false;
+  legs_.clear();
+  ask(way(), now, solids);
+}
+
+ReachQuestion::Kind ReachTask::way() const {
+  using Kind = ReachQuestion::Kind;
+  if (goal_.carries) return Kind::Carry;
+  if (returns_) return Kind::Return;
+  return goal_.base_stays ? Kind::Last : Kind::Whole;
+}
+
+void ReachTask::ask(ReachQuestion::Kind kind,
+                    const BodyJoints& now,
+                    std::span<const Solid> solids) {
+  const auto failed = static_cast<std::uint64_t>(plans_);
+  const bool whole = kind == ReachQuestion::Kind::Whole;
+  question_ = ReachQuestion{.kind = kind,
+                            .now = now,
+                            .hand_W = goal_.hand_W,
+                            .base_goal = goal_.then.value_or(SetGoal{}),
+                            .solids = {solids.begin(), solids.end()},
+                            .seed = whole ? seed_ + failed : seed_,
+                            .rules = rules_};
+  question_->rules.arm_angle = goal_.arm_angle;
+  if (whole) question_->rules.skip += kTriedPlaces * failed;
+  state_ = State::Plans;
+}
+
+void ReachTask::ask_anew(const BodyJoints& now, std::span<const Solid> solids) {
+  if (plans_ < kMostPlans) return ask(way(), now, solids);
+  why_ = "The robot has tried several ways, and none led to the goal.";
+  give_up();
+}
+
+void ReachTask::take(ReachPlan found, const BodyJoints& now, std::span<const Solid> solids) {
+  const bool last = question_->kind == ReachQuestion::Kind::Last;
+  question_.reset();
+  still_ = 0;
+  if (!last || way() == ReachQuestion::Kind::Last) return take_whole(std::move(found), now);
+  if (found.legs.empty()) {
+    legs_.clear();
+    return ask_anew(now, solids);
+  }
+  legs_[leg_] = std::move(found.legs.front());
+  ++changes_;
+  follow(now);
+}
+
+/// Where there is no other way, the planned one may become free.
+void ReachTask::take_whole(ReachPlan found, const BodyJoints& now) {
+  ++plans_;
+  if (!found.legs.empty()) {
+    legs_ = std::move(found.legs);
+    leg_ = 0;
+    ++changes_;
+    return follow(now);
+  }
+  why_ = std::move(found.why);
+  const bool has_way = !legs_.empty() && leg_ < legs_.size();
+  if (!has_way || plans_ >= kMostPlans) return give_up();
+  state_ = State::Waits;
+}
+
+void ReachTask::follow(const BodyJoints& now) {
+  state_ = State::Goes;
+  std::vector<BodyJoints>& path = legs_[leg_].path;
+  path.front() = now;
+  follower_.begin(path);
 }
 
 BodyCommand ReachTask::update(const BodyJoints& now, std::span<const Solid> solids, double dt) {
-  if (state_ == State::GivenUp || legs_.empty()) return {.state = FollowState::Waits};
+  BodyCommand rest{.state = FollowState::Waits};
+  if (question_ || state_ == State::GivenUp || legs_.empty()) return rest;
   BodyCommand command = follower_.update(now, solids, dt);
   if (command.state == FollowState::Arrived && leg_ + 1 < legs_.size()) {
     next_leg(now, solids);
     return {};
+  }
+  if (command.state == FollowState::Arrived && goal_.then && !returns_ && !goal_.carries) {
+    returns_ = true;
+    plans_ = 0;
+    legs_.clear();
+    ask(way(), now, solids);
+    return rest;
   }
   if (command.state == FollowState::Arrived) {
     state_ = State::Arrived;
@@ -52,68 +128,52 @@ BodyCommand ReachTask::update(const BodyJoints& now, std::span<const Solid> soli
   still_ = carries_on(command, legs_[leg_].kind) ? 0 : still_ + dt;
   state_ = still_ > 0 ? State::Waits : State::Goes;
   if (still_ > kPatience) {
-    // Where there is no other way, the planned one may become free.
     still_ = 0;
-    if (!plan_anew(now, solids) && plans_ == kMostPlans) give_up();
+    ask_anew(now, solids);
   }
   return command;
 }
 
 std::string ReachTask::words() const {
   switch (state_) {
+    case State::Plans:
+      return "The robot looks for a way.";
     case State::Goes:
       return "The robot " + std::string(name(legs_[leg_].kind)) + ".";
     case State::Waits:
       return "The robot waits: something is too near to go on.";
     case State::Arrived:
-      return "The hand is at its goal.";
+      if (goal_.carries) return "The robot is at its goal.";
+      return returns_ ? "The robot is back from where its hand has been."
+                      : "The hand is at its goal.";
     case State::GivenUp:
       return why_;
   }
   return "";
 }
 
-bool ReachTask::plan_anew(const BodyJoints& now, std::span<const Solid> solids) {
-  if (plans_ == kMostPlans) {
-    why_ = "The robot has tried several ways, and none led to the goal.";
-    return false;
-  }
-  const auto failed = static_cast<std::uint64_t>(plans_);
-  ReachRules rules = rules_;
-  rules.skip += kTriedPlaces * failed;
-  ReachPlan found = plan_reach(body_, now, hand_W_, solids, seed_ + failed, rules);
-  ++plans_;
-  if (found.legs.empty()) {
-    why_ = std::move(found.why);
-    return false;
-  }
-  legs_ = std::move(found.legs);
-  leg_ = 0;
-  state_ = State::Goes;
-  follower_.begin(legs_.front().path);
-  return true;
-}
-
 void ReachTask::next_leg(const BodyJoints& now, std::span<const Solid> solids) {
   ++leg_;
-  ReachLeg& leg = legs_[leg_];
-  if (leg_ + 1 == legs_.size() && leg.kind == ReachLeg::Kind::Arm) {
-    // The base stands a little off its place: the hand's goal counts, not the joints' of the plan.
-    auto last = plan_last_reach(body_, now, hand_W_, solids, seed_, rules_);
-    if (!last) {
-      if (!plan_anew(now, solids)) give_up();
-      return;
-    }
-    leg = std::move(*last);
-  } else {
-    leg.path.front() = now;
-  }
-  follower_.begin(leg.path);
+  // The base stands a little off its place: the hand's goal counts, not the joints' of the plan.
+  const bool last = leg_ + 1 == legs_.size() && legs_[leg_].kind == ReachLeg::Kind::Arm;
+  if (last) return ask(ReachQuestion::Kind::Last, now, solids);
+  follow(now);
 }
 
 void ReachTask::give_up() {
   legs_.clear();
+  leg_ = 0;
+  ++changes_;
   state_ = State::GivenUp;
+}
+
+void answer_at_once(ReachTask& task,
+                    const MobileArm& body,
+                    const BodyJoints& now,
+                    std::span<const Solid> solids) {
+  while (const ReachQuestion* question = task.question()) {
+    task.take(answer(body, *question), now, solids);
+  }
 }
 
 }  // namespace algo

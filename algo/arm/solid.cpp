@@ -94,6 +94,7 @@ double gap_along(const Vec3& from_W, const Vec3& to_W, const Solid& solid, const
 void append_solids(const Obstacle& obstacle, std::vector<Solid>& solids) {
   if (is_ground(obstacle)) return;
   Solid solid;
+  solid.bottom = obstacle.bottom;
   solid.top = obstacle.height;
   if (const auto* cylinder = std::get_if<Cylinder>(&obstacle.shape)) {
     solid.centre_W = obstacle.pose_W.position();

@@ -55,8 +55,8 @@ Solid solid_shadow(const Solid& solid, const Vec2& ahead, const Vec2& shoulder_W
 /// [m] Along `ahead`, between a link and `solid`; negative where they are side by side.
 double gap_along(const Vec3& from_W, const Vec3& to_W, const Solid& solid, const Vec2& ahead);
 
-/// Appends what `obstacle` occupies from the floor to its height; a polygon as its edges. Ramps and
-/// trenches are ground and add nothing.
+/// Appends what `obstacle` occupies from its bottom to its height; a polygon as its edges. Ramps
+/// and trenches are ground and add nothing.
 void append_solids(const Obstacle& obstacle, std::vector<Solid>& solids);
 
 }  // namespace algo

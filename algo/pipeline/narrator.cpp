@@ -24,10 +24,14 @@ void make_room(Explanation& words) {
 
 bool Narrator::Said::same_state(const Said& other) const {
   return hold == other.hold && halt == other.halt && limit == other.limit &&
-         mission == other.mission && behaviour == other.behaviour && state == other.state;
+         mission == other.mission && behaviour == other.behaviour && arm == other.arm &&
+         state == other.state;
 }
 
-void Narrator::tell(const Controller& controller, bool by_ramps, Telemetry& t) {
+void Narrator::tell(const Controller& controller,
+                    const ArmBehaviour* arm,
+                    bool by_ramps,
+                    Telemetry& t) {
   show_legend(t);
   const Said now{.stamp = t.observation.stamp,
                  .hold = t.hold,
@@ -35,6 +39,7 @@ void Narrator::tell(const Controller& controller, bool by_ramps, Telemetry& t) {
                  .mission = t.mission,
                  .limit = t.limit,
                  .behaviour = t.behaviour,
+                 .arm = t.arm.state,
                  .state = t.output.state};
   // Written so that a NaN stamp makes new words.
   t.words_fresh =
@@ -43,6 +48,10 @@ void Narrator::tell(const Controller& controller, bool by_ramps, Telemetry& t) {
   if (t.words_fresh) {
     make_room(words_);
     explain(t, controller, words_);
+    if (arm != nullptr && !t.hold && t.behaviour != behaviours::kAvoid &&
+        t.behaviour != behaviours::kManual) {
+      arm->explain(t, words_);
+    }
     if (by_ramps && t.mission == Mission::Stuck && !t.hold) words_.why += kRamps;
     said_ = now;
   }

@@ -5,6 +5,7 @@
 
 #include "algo/controller.hpp"
 #include "algo/legend.hpp"
+#include "algo/pipeline/arm_behaviour.hpp"
 
 namespace algo {
 
@@ -18,7 +19,8 @@ class Narrator {
   /// changed, else twice a second; otherwise the words of the previous tick. Fills t.legend, which
   /// is fresh when it has changed, and every two seconds.
   /// `by_ramps`: there are ramps, and no sensor tells them from walls.
-  void tell(const Controller& controller, bool by_ramps, Telemetry& t);
+  /// `arm` is null for a robot without one.
+  void tell(const Controller& controller, const ArmBehaviour* arm, bool by_ramps, Telemetry& t);
 
  private:
   /// The facts that the words explain.
@@ -29,6 +31,7 @@ class Narrator {
     Mission mission = Mission::Idle;
     Limit limit{};
     Name behaviour{};
+    ArmState arm = ArmState::Rest;
     std::uint8_t state = 0;
     bool same_state(const Said& other) const;
   };

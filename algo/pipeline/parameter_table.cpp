@@ -7,6 +7,7 @@
 
 #include "algo/filter/filter.hpp"
 #include "algo/gate.hpp"
+#include "algo/pipeline/arm_behaviour.hpp"
 #include "algo/pipeline/controllers.hpp"
 #include "algo/pipeline/reactive.hpp"
 #include "algo/pipeline/turnover_guard.hpp"
@@ -34,6 +35,7 @@ std::vector<const ParameterInfo*> all_parameters() {
   add(kTeleopParameters);
   add(kTurnoverParameters);
   add(kGroundParameters);
+  add(kArmParameters);
   return all;
 }
 

@@ -50,6 +50,9 @@ double nearest_distance(const Scene& scene) {
   return std::isfinite(least) ? least : scene.scan.range_max;
 }
 
+constexpr const char* kNoArm = "This robot has no arm.";
+constexpr double kUnitError = 1e-3;  // of a quaternion's length
+
 bool within_unit(double axis) {
   return axis >= -1.0 && axis <= 1.0;
 }  // false for NaN
@@ -81,6 +84,12 @@ Pipeline::Pipeline(const PipelineConfig& config,
     auto manual = std::make_unique<ManualBehaviour>(*avoid);
     manual_ = manual.get();
     coordinator_.add(std::move(manual));
+  }
+  if (spec.drives && spec.arm) {
+    auto thinker = config.thinker ? config.thinker() : std::make_unique<LateThinker>();
+    auto arm = std::make_unique<ArmBehaviour>(spec, config.declared, std::move(thinker));
+    arm_ = arm.get();
+    coordinator_.add(std::move(arm));
   }
   coordinator_.add(std::move(avoid));
   by_sonar_ = !spec.has_laser && controller_.by_sonar;
@@ -120,6 +129,11 @@ std::optional<std::string> Pipeline::refusal(const Request& request) const {
   if (add != nullptr) return refusal_of(add->goal);
   if (const auto* goal = std::get_if<SetGoal>(&request)) return refusal_of(*goal);
   if (const auto* list = std::get_if<SetGoals>(&request)) return refusal_of(*list);
+  if (const auto* joints = std::get_if<SetJoints>(&request)) return refusal_of(*joints);
+  if (const auto* hand = std::get_if<SetHandGoal>(&request)) return refusal_of(*hand);
+  if (const auto* carry = std::get_if<Carry>(&request)) {
+    return arm_ == nullptr ? kNoArm : refusal_of(carry->goal);
+  }
   if (const auto* stick = std::get_if<Joystick>(&request)) {
     if (!within_unit(stick->forward) || !within_unit(stick->turn)) {
       return "Joystick axes must lie between -1 and 1.";
@@ -142,6 +156,27 @@ std::optional<std::string> Pipeline::refusal_of(const SetGoal& goal) const {
   if (!finite) return "The goal must be finite numbers.";
   if (!spec_.drives) return "This robot only replays a log; it cannot be sent to a goal.";
   return std::nullopt;
+}
+
+std::optional<std::string> Pipeline::refusal_of(const SetJoints& joints) const {
+  if (arm_ == nullptr) return kNoArm;
+  for (std::size_t k = 0; k < kArmJoints; ++k) {
+    if (std::abs(joints.position[k]) <= spec_.arm->limits[k]) continue;  // false for NaN
+    return "Joint " + std::to_string(k + 1) + " must lie within " +
+           std::to_string(spec_.arm->limits[k]) + " rad to either side.";
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> Pipeline::refusal_of(const SetHandGoal& hand) const {
+  if (arm_ == nullptr) return kNoArm;
+  const Quaternion& a = hand.attitude_W;
+  const double length = std::sqrt(a.w * a.w + a.x * a.x + a.y * a.y + a.z * a.z);
+  if (!hand.position_W.allFinite() || !std::isfinite(hand.arm_angle.value_or(0))) {
+    return "The hand's goal must be finite numbers.";
+  }
+  if (!(std::abs(length - 1) < kUnitError)) return "The hand's attitude must be a unit quaternion.";
+  return hand.then ? refusal_of(*hand.then) : std::nullopt;
 }
 
 std::optional<std::string> Pipeline::refusal_of(const SetGoals& list) const {
@@ -186,7 +221,7 @@ void Pipeline::decide(Telemetry& t) {
     t.command.base.v = turnover_->eased(t.command.base.v, t.observation.odometry);
   }
   remember(t.command.base);
-  narrator_.tell(*avoiding_, by_ramps_, t);  // explains the tick, now and then
+  narrator_.tell(*avoiding_, arm_, by_ramps_, t);  // explains the tick, now and then
 }
 
 void Pipeline::notice_ramp(const Request& edit) {
@@ -198,6 +233,7 @@ void Pipeline::notice_ramp(const Request& edit) {
 }
 
 void Pipeline::apply(const Request& request) {
+  if (arm_ != nullptr) arm_->apply(request);
   if (is_edit(request)) return notice_ramp(request);  // carried out by the robot
   if (intent_.apply(request)) sequencer_.begin(intent_);
   if (std::holds_alternative<Joystick>(request)) {
@@ -279,6 +315,7 @@ void Pipeline::control(Telemetry& t) {
   resource.merge = &sensing_.merge();
   resource.under_way = under_way_;
   resource.parameters = &intent_.parameters;
+  resource.intent = &intent_;
   resource.spec = turnover_ != nullptr ? &turnover_->spec() : &spec_;
   resource.goal = t.goal;
   resource.mission = t.mission;
@@ -294,7 +331,13 @@ void Pipeline::control(Telemetry& t) {
   driver_ = decision.winner;
   t.behaviour = decision.winner;
   t.limit = decision.limit;
-  t.command = actuate(decision.twist, spec_);
+  t.command = actuate(decision, t.observation.joints, spec_);
+  if (arm_ == nullptr) return;
+  const Command wanted = t.command;
+  t.command = arm_->guarded(resource, wanted);
+  if (t.command != wanted) t.limit = limits::kArmNear;
+  t.mission = arm_->mission().value_or(t.mission);
+  if (intent_.carry_goal) t.goal = intent_.carry_goal;  // for people
 }
 
 void Pipeline::hold(Telemetry& t) {
@@ -308,9 +351,11 @@ void Pipeline::hold(Telemetry& t) {
   in.needs_tilt = spec_.drives && (spec_.stance || spec_.inclinometer);
   in.tilt_timeout = intent_.parameters[kTiltTimeout];
   in.tilt_stamp = tilt_stamp_;
+  in.needs_joints = arm_ != nullptr;
   t.hold = gate(in, t.observation, t.command);
+  if (arm_ != nullptr) arm_->show(t);
   if (!t.hold) return;
-  t.command = {};
+  t.command = {.joints = t.command.joints};
   sequencer_.interrupt();
   if (t.mission == Mission::Driving || t.mission == Mission::Stuck) t.mission = Mission::Held;
 }

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "algo/arm/reach_thinker.hpp"
 #include "algo/intent.hpp"
+#include "algo/pipeline/arm_behaviour.hpp"
 #include "algo/pipeline/controllers.hpp"
 #include "algo/pipeline/grid_thinning.hpp"
 #include "algo/pipeline/ground_behaviour.hpp"
@@ -26,6 +28,9 @@ struct PipelineConfig {
   /// A person may take the stick. If false, the pipeline keeps no map for that.
   bool by_hand = true;
   RunFacts run{};
+  /// Pieces that a robot with an arm knows from the start.
+  std::vector<Obstacle> declared{};
+  MakeThinker thinker{};  // of a robot with an arm
 };
 
 /// Turns observations and requests into commands for one robot. A fresh pipeline with the same
@@ -55,6 +60,9 @@ class Pipeline {
   /// The second half, for the same `t`.
   void decide(Telemetry& t);
 
+  /// True if a plan has come that the robot asked for. Give it TakePlan before the next tick.
+  bool plan_ready() const { return arm_ != nullptr && arm_->plan_ready(); }
+
   /// Turns grids for display on or off, at most two a second. Never changes a command.
   void want_grids(bool wanted) { grids_wanted_ = wanted; }
 
@@ -65,6 +73,8 @@ class Pipeline {
  private:
   std::optional<std::string> refusal_of(const SetGoal& goal) const;
   std::optional<std::string> refusal_of(const SetGoals& list) const;
+  std::optional<std::string> refusal_of(const SetJoints& joints) const;
+  std::optional<std::string> refusal_of(const SetHandGoal& hand) const;
   void apply(const Request& request);
   void notice_ramp(const Request& edit);
   void sense(Telemetry& t);
@@ -86,6 +96,7 @@ class Pipeline {
       nullptr;                            // one of its behaviours, if a person may take the stick
   TurnoverGuard* turnover_ = nullptr;     // another one, if the robot may turn over
   GroundBehaviour* ground_ = nullptr;     // one of its behaviours, if the robot has floor sensors
+  ArmBehaviour* arm_ = nullptr;           // one of its behaviours, if the robot has an arm
   const Controller* avoiding_ = nullptr;  // the controller of one of its behaviours
   Sequencer sequencer_{};
   Scene scene_{};

@@ -127,6 +127,7 @@ Decision BehaviourCoordinator::decide(const Resource& resource, ControlOutput& o
       slot.held = slot.behaviour->propose(resource, output);
       slot.age = 0;
     }
+    if (!decision.rates) decision.rates = slot.held.rates;
     if (!slot.held.active || decision.winner != behaviours::kRest) continue;
     decision.winner = slot.behaviour->name();
     decision.twist = slot.held.twist;
@@ -155,6 +156,23 @@ Twist2 limited(const Twist2& twist, const TwistLimits& limits) {
 Command actuate(const Twist2& twist, const RobotSpec& spec) {
   return {{std::clamp(twist.v, -spec.max_v, spec.max_v),
            std::clamp(twist.omega, -spec.max_omega, spec.max_omega)}};
+}
+
+Command actuate(const Decision& decision,
+                const std::optional<JointReading>& joints,
+                const RobotSpec& spec) {
+  Command command = actuate(decision.twist, spec);
+  if (!spec.arm) return command;
+  command.joints = kArmJoints;
+  if (!decision.rates || !joints) return command;
+  for (std::size_t k = 0; k < kArmJoints; ++k) {
+    const double most = spec.arm->rates[k];
+    // No further than to the joint's limit. NaN stays, for the gate.
+    const double low = std::min(0.0, (-spec.arm->limits[k] - joints->position[k]) / spec.period);
+    const double high = std::max(0.0, (spec.arm->limits[k] - joints->position[k]) / spec.period);
+    command.joint_rates[k] = std::clamp(std::clamp((*decision.rates)[k], -most, most), low, high);
+  }
+  return command;
 }
 
 }  // namespace algo

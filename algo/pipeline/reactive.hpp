@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "algo/controller.hpp"
+#include "algo/intent.hpp"
 #include "algo/pipeline/shared_control.hpp"
 #include "algo/pipeline/stick_guard.hpp"
 #include "algo/sensor_merge.hpp"
@@ -25,6 +26,7 @@ struct Resource : ControlInput {
   const SensorMerge* merge = nullptr;   // recent sonar and infrared returns
   std::span<const Twist2> under_way{};  // commands sent that do not act yet, oldest first
   const Parameters* parameters = nullptr;
+  const Intent* intent = nullptr;  // for the arm's goals
   Mission mission = Mission::Idle;
   Joystick joystick{};
   bool manual = false;  // a driver's stick is active
@@ -42,8 +44,9 @@ struct TwistLimits {
 struct Proposal {
   bool active = false;  // wants the base
   Twist2 twist{};
-  TwistLimits limits{};  // apply even if the behaviour does not want the base
-  Limit limit{};         // why `twist` is not what its driver wants
+  TwistLimits limits{};                // apply even if the behaviour does not want the base
+  Limit limit{};                       // why `twist` is not what its driver wants
+  std::optional<JointValues> rates{};  // [rad/s] wants the arm
 };
 
 class Behaviour {
@@ -116,6 +119,7 @@ class ManualBehaviour final : public Behaviour {
 struct Decision {
   Name winner = behaviours::kRest;
   Twist2 twist{};
+  std::optional<JointValues> rates{};  // [rad/s] of the first behaviour that wants the arm
   Limit limit{};  // the winner's own, or the limit that changed its twist; the last of several
 };
 
@@ -144,5 +148,10 @@ Twist2 limited(const Twist2& twist, const TwistLimits& limits);
 
 /// The command to the base: `twist` within the robot's own limits.
 Command actuate(const Twist2& twist, const RobotSpec& spec);
+/// The same with the arm's joints at `rates` [rad/s], within their limits. `joints` is the newest
+/// reading, if there is one.
+Command actuate(const Decision& decision,
+                const std::optional<JointReading>& joints,
+                const RobotSpec& spec);
 
 }  // namespace algo

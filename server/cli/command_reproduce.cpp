@@ -12,6 +12,7 @@
 #include "server/lab/reproduce/markdown.hpp"
 #include "server/lab/reproduce/masuda_study.hpp"
 #include "server/lab/reproduce/robhaz_study.hpp"
+#include "server/lab/reproduce/session_reach.hpp"
 
 namespace server {
 namespace {
@@ -28,6 +29,7 @@ struct ReproduceCommand {
   bool robhaz = false;
   bool masuda = false;
   bool arm = false;
+  std::size_t reaches = 0;  // of each scene, as runs
   std::string course{};
 };
 
@@ -70,6 +72,16 @@ int execute_masuda_study(const ReproduceCommand& options) {
 
 /// Only the arm of the sibling thesis. A finding that fails is a failure.
 int execute_arm_study(const ReproduceCommand& options) {
+  if (options.reaches > 0) {
+    ProgressLine progress;
+    const auto show = [&](std::size_t done, std::size_t all) {
+      progress.show(fmt::format("reaches: {} of {} runs", done, all));
+    };
+    const reproduce::ReachStudy study = reproduce::study_session_reach(
+        options.reaches, {.threads = options.study.threads, .progress = show});
+    fmt::print("{}", options.as_json ? to_json(study).dump(2) + "\n" : to_text(study));
+    return study.all.touched == 0 ? kReached : kNotHeld;
+  }
   const reproduce::ArmStudy study = reproduce::study_arm();
   report(study, options);
   return all_hold(study) ? kReached : kNotHeld;
@@ -163,6 +175,12 @@ void add_reproduce_command(Command app, int& status) {
       "--arm",
       options->arm,
       "Carry the sibling thesis' arm of seven joints past posts, and let it reach, instead");
+  command
+      .add_option("--reaches",
+                  options->reaches,
+                  "Only the reaches, as runs in Bullet: so many worlds of each of four kinds")
+      .range(1, 10000)
+      .needs(arm);
   for (const Option& other : {filter, robhaz, masuda}) arm.excludes(other);
   for (const char* tables :
        {"--scenarios", "--seeds", "--first-seed", "--paper-only", "--sweeps"}) {

@@ -30,7 +30,11 @@ std::string_view type_of(const algo::Request& request) {
       "set_parameter",
       "add_goal",
       "set_goals",
-      "change_obstacle"};
+      "change_obstacle",
+      "set_joints",
+      "set_hand_goal",
+      "carry",
+      "take_plan"};
   static_assert(!kTypes.back().empty(), "every kind of request has its name");
   return kTypes[request.index()];
 }

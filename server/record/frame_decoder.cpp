@@ -62,6 +62,7 @@ algo::Obstacle read_obstacle(const fb::Obstacle* o) {
   out.height = o->height();
   out.reflectivity = o->reflectivity();
   out.specular = o->specular();
+  out.bottom = o->bottom();
   if (o->path() != nullptr) out.path = read_path(*o->path());
   const double a = o->size()->x();
   const double c = o->size()->y();
@@ -101,6 +102,30 @@ algo::SetGoal read_goal(const fb::SetGoal& goal) {
   algo::SetGoal out;
   out.position_W = from_wire(*goal.position());
   if (goal.has_heading()) out.heading = goal.heading();
+  return out;
+}
+
+algo::JointValues read_joints(const flatbuffers::Vector<double>* list) {
+  algo::JointValues values{};
+  if (list == nullptr || list->size() != values.size()) {
+    throw WireError("The frame does not have one number for each joint of an arm.");
+  }
+  check_alignment(*list);
+  std::copy(list->begin(), list->end(), values.begin());
+  return values;
+}
+
+algo::SetHandGoal read_hand_goal(const fb::SetHandGoal& goal) {
+  if (goal.position() == nullptr || goal.attitude() == nullptr) {
+    throw WireError("A goal of the hand in the frame lacks its position or attitude.");
+  }
+  algo::SetHandGoal out;
+  out.position_W = {goal.position()->x(), goal.position()->y(), goal.position()->z()};
+  const fb::Quaternion& a = *goal.attitude();
+  out.attitude_W = {a.w(), a.x(), a.y(), a.z()};
+  if (const auto angle = goal.arm_angle()) out.arm_angle = *angle;
+  out.base_stays = goal.base_stays();
+  if (goal.then() != nullptr) out.then = read_goal(*goal.then());
   return out;
 }
 
@@ -164,6 +189,17 @@ algo::Request read_request(const fb::RequestBox& box) {
       return algo::Stop{box.request_as_Stop()->engaged()};
     case fb::Request_SetParameter:
       return read_parameter(*box.request_as_SetParameter());
+    case fb::Request_SetJoints:
+      return algo::SetJoints{read_joints(box.request_as_SetJoints()->positions())};
+    case fb::Request_SetHandGoal:
+      return read_hand_goal(*box.request_as_SetHandGoal());
+    case fb::Request_Carry: {
+      const auto* carry = box.request_as_Carry();
+      if (carry->goal() == nullptr) throw WireError("A goal to carry to in the frame is empty.");
+      return algo::Carry{read_goal(*carry->goal())};
+    }
+    case fb::Request_TakePlan:
+      return algo::TakePlan{};
     default:
       throw WireError("The frame has a request of an unknown kind.");
   }
@@ -245,6 +281,11 @@ void read_observation(const fb::Frame& f, algo::Observation& o) {
   if (const auto* e = f.encoders()) {
     o.encoders = {f.encoders_stamp().value_or(o.stamp), e->left(), e->right()};
   }
+  if (const auto* joints = f.joints()) {
+    o.joints = {joints->stamp().value_or(o.stamp),
+                read_joints(joints->positions()),
+                read_joints(joints->rates())};
+  }
   if (f.channels() == nullptr) return;
   for (const fb::Reading* r : *f.channels()) {
     algo::ChannelReading& reading = o.channels.append();
@@ -281,6 +322,36 @@ algo::Command read_command(const fb::Frame& f) {
   command.joints = static_cast<std::uint8_t>(rates->size());
   std::copy(rates->begin(), rates->end(), command.joint_rates.begin());
   return command;
+}
+
+void read_arm(const fb::Frame& f, algo::ArmTelemetry& arm) {
+  const fb::Arm* in = f.arm();
+  arm.present = in != nullptr;
+  arm.hand_goal.reset();
+  arm.joint_goal.reset();
+  arm.ghost.clear();
+  arm.plan_fresh = false;
+  if (in == nullptr) return;
+  check_enum(in->state(), fb::ArmState_MAX, "state of the arm");
+  arm.state = static_cast<algo::ArmState>(in->state());
+  arm.own_clearance = in->own_clearance();
+  arm.plan = in->plan();
+  if (in->clearance() == nullptr || in->clearance()->size() != arm.clearance.size()) {
+    throw WireError("The frame does not have the clearance of each link of an arm.");
+  }
+  check_alignment(*in->clearance());
+  std::copy(in->clearance()->begin(), in->clearance()->end(), arm.clearance.begin());
+  if (in->hand_goal() != nullptr) arm.hand_goal = read_hand_goal(*in->hand_goal());
+  if (in->joint_goal() != nullptr) arm.joint_goal = {read_joints(in->joint_goal())};
+  const auto* ghost = in->ghost();
+  if (ghost == nullptr) return;
+  check_alignment(*ghost);
+  constexpr std::size_t kNumbers = std::tuple_size_v<algo::GhostPose>;
+  if (ghost->size() % kNumbers != 0) throw WireError("The plan in the frame is not whole.");
+  arm.plan_fresh = true;
+  for (const float* from = ghost->data(); from != ghost->data() + ghost->size(); from += kNumbers) {
+    std::copy(from, from + kNumbers, arm.ghost.append().begin());
+  }
 }
 
 /// Reads the controller's decision, without layers and measures.
@@ -336,6 +407,10 @@ void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t) {
                       .tilt = read_tilt(f.tilt()),
                       .overturned = f.overturned(),
                       .fallen = f.fallen()};
+    if (const auto touched = f.touched()) {
+      check_enum(*touched, fb::BodyLink_MAX, "part of a robot");
+      t.ground_truth->touched = static_cast<algo::BodyLink>(*touched);
+    }
   }
   t.moved.clear();
   if (f.moved() != nullptr) {
@@ -353,6 +428,7 @@ void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t) {
     for (const fb::Vec2f* p : *f.goals_ahead()) t.goals_ahead.push_back({from_wire(*p), {}});
   }
   read_output(f, t);
+  read_arm(f, t.arm);
   t.command = read_command(f);
   t.hold = {.name = read_name(f.hold(), "hold")};
   t.limit = {.name = read_name(f.limit(), "limit")};

@@ -91,13 +91,41 @@ Offset<fb::Obstacle> write_obstacle(Builder& b, const algo::Obstacle& o) {
       points.empty() ? 0 : b.CreateVectorOfStructs(points.data(), points.size());
   const auto path = o.path ? write_path(b, *o.path) : 0;
   const fb::Pose2 pose = to_wire(o.pose_W);
-  return fb::CreateObstacle(
-      b, o.id, &pose, kind, &size, point_vector, o.height, o.reflectivity, o.specular, path, low);
+  return fb::CreateObstacle(b,
+                            o.id,
+                            &pose,
+                            kind,
+                            &size,
+                            point_vector,
+                            o.height,
+                            o.reflectivity,
+                            o.specular,
+                            path,
+                            low,
+                            o.bottom);
 }
 
 Offset<fb::SetGoal> write_goal(Builder& b, const algo::SetGoal& goal) {
   const fb::Vec2 position = to_wire(goal.position_W);
   return fb::CreateSetGoal(b, &position, goal.heading.value_or(0), goal.heading.has_value());
+}
+
+Offset<flatbuffers::Vector<double>> write_joints(Builder& b, const algo::JointValues& values) {
+  return b.CreateVector(values.data(), values.size());
+}
+
+Offset<fb::SetHandGoal> write_hand_goal(Builder& b, const algo::SetHandGoal& goal) {
+  const algo::Quaternion& a = goal.attitude_W;
+  const fb::Vec3 position(goal.position_W.x(), goal.position_W.y(), goal.position_W.z());
+  const fb::Quaternion attitude(a.w, a.x, a.y, a.z);
+  const auto then = goal.then ? write_goal(b, *goal.then) : 0;
+  fb::SetHandGoalBuilder out(b);
+  out.add_position(&position);
+  out.add_attitude(&attitude);
+  if (goal.arm_angle) out.add_arm_angle(*goal.arm_angle);
+  out.add_base_stays(goal.base_stays);
+  out.add_then(then);
+  return out.Finish();
 }
 
 struct RequestWriter {
@@ -149,6 +177,19 @@ struct RequestWriter {
     const std::string_view name = r.parameter->key();
     const auto text = b.CreateString(name.data(), name.size());
     return {fb::Request_SetParameter, fb::CreateSetParameter(b, text, r.value).Union()};
+  }
+  Written operator()(const algo::SetJoints& r) const {
+    const auto positions = write_joints(b, r.position);
+    return {fb::Request_SetJoints, fb::CreateSetJoints(b, positions).Union()};
+  }
+  Written operator()(const algo::SetHandGoal& r) const {
+    return {fb::Request_SetHandGoal, write_hand_goal(b, r).Union()};
+  }
+  Written operator()(const algo::Carry& r) const {
+    return {fb::Request_Carry, fb::CreateCarry(b, write_goal(b, r.goal)).Union()};
+  }
+  Written operator()(const algo::TakePlan&) const {
+    return {fb::Request_TakePlan, fb::CreateTakePlan(b).Union()};
   }
 };
 
@@ -219,6 +260,45 @@ Offset<flatbuffers::Vector<Offset<fb::RequestBox>>> write_requests(
   return b.CreateVector(boxes);
 }
 
+Offset<fb::Joints> write_reading(Builder& b, const algo::Observation& o) {
+  if (!o.joints) return 0;
+  const auto positions = write_joints(b, o.joints->position);
+  const auto rates = write_joints(b, o.joints->rate);
+  fb::JointsBuilder out(b);
+  out.add_positions(positions);
+  out.add_rates(rates);
+  if (o.joints->stamp != o.stamp) out.add_stamp(o.joints->stamp);
+  return out.Finish();
+}
+
+template <typename Numbers>
+Offset<flatbuffers::Vector<float>> write_floats(Builder& b, const Numbers& numbers) {
+  std::vector<float> floats(numbers.begin(), numbers.end());
+  return b.CreateVector(floats);
+}
+
+Offset<fb::Arm> write_arm(Builder& b, const algo::ArmTelemetry& arm) {
+  if (!arm.present) return 0;
+  const auto clearance = write_floats(b, arm.clearance);
+  const auto hand = arm.hand_goal ? write_hand_goal(b, *arm.hand_goal) : 0;
+  const auto joints = arm.joint_goal ? write_joints(b, arm.joint_goal->position) : 0;
+  std::vector<float> poses;
+  if (arm.plan_fresh) {
+    for (const algo::GhostPose& pose : arm.ghost)
+      poses.insert(poses.end(), pose.begin(), pose.end());
+  }
+  const auto ghost = arm.plan_fresh ? b.CreateVector(poses) : 0;
+  fb::ArmBuilder out(b);
+  out.add_clearance(clearance);
+  out.add_own_clearance(static_cast<float>(arm.own_clearance));
+  out.add_state(static_cast<fb::ArmState>(arm.state));
+  out.add_hand_goal(hand);
+  out.add_joint_goal(joints);
+  out.add_plan(arm.plan);
+  out.add_ghost(ghost);
+  return out.Finish();
+}
+
 struct FrameWriter {
   fb::FrameBuilder frame;
   const algo::Telemetry& t;
@@ -273,6 +353,7 @@ void FrameWriter::truth() {
   frame.add_collided(g.collided);
   frame.add_overturned(g.overturned);
   frame.add_fallen(g.fallen);
+  if (g.touched) frame.add_touched(static_cast<fb::BodyLink>(*g.touched));
   if (!g.tilt) return;
   const fb::Tilt tilt(static_cast<float>(g.tilt->z),
                       static_cast<float>(g.tilt->roll),
@@ -317,6 +398,8 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   const auto moved = write_structs<fb::Moved>(b, t.moved);
   const auto goals_ahead = write_structs<fb::Vec2f>(b, t.goals_ahead);
   const auto channels = write_channels(b, o);
+  const auto reading = write_reading(b, o);
+  const auto arm = write_arm(b, t.arm);
   const auto line = write_line(b, o.line);
   const auto rates =
       t.command.joints == 0 ? 0 : b.CreateVector(t.command.joint_rates.data(), t.command.joints);
@@ -349,6 +432,8 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   frame.add_channels(channels);
   frame.add_line(line);
   frame.add_joint_rates(rates);
+  frame.add_joints(reading);
+  frame.add_arm(arm);
   frame.add_goals_ahead(goals_ahead);
   frame.add_moved(moved);
   b.Finish(frame.Finish());

@@ -133,6 +133,11 @@ void RunCsv::learn(const algo::Telemetry& t) {
   for (const auto& r : t.observation.bumpers) add_mount(bumpers_, r.mount_R);
   for (const auto& scan : t.observation.scans) add_mount(scanners_, scan.mount_R);
   joints_ = std::max<std::size_t>(joints_, t.command.joints);
+  arm_ = arm_ || t.arm.present;
+}
+
+std::span<const FrameColumn> RunCsv::own_arm() const {
+  return arm_ ? arm_columns() : std::span<const FrameColumn>{};
 }
 
 std::string RunCsv::header() const {
@@ -154,6 +159,7 @@ std::string RunCsv::header() const {
   add_each("sonar", sonar_.size(), "m");
   add_each("bumper", bumpers_.size(), "");
   add_each("joint_rate", joints_, "rad/s");
+  for (const FrameColumn& column : own_arm()) add(column.name, column.unit);
   for (const auto& measure : measures_.columns()) add(measure.name, measure.unit);
   if (options_.arrays) {
     for (std::size_t i = 0; i < scanners_.size(); ++i) {
@@ -222,6 +228,10 @@ std::optional<std::uint64_t> RunCsv::lines(db::RunReader& reader,
     }
     put_rings(out, t.observation);
     put_joints(out, t.command, joints_);
+    for (const FrameColumn& column : own_arm()) {
+      out += ',';
+      column.put(out, t);
+    }
     measures_.read(frame, measures);
     for (const double measure : measures) {
       out += ',';

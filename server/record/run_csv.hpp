@@ -5,12 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "algo/observation.hpp"
 #include "algo/telemetry.hpp"
 #include "db/run_reader.hpp"
+#include "server/record/arm_columns.hpp"
 #include "server/record/frame_measures.hpp"
 
 namespace server {
@@ -22,7 +24,7 @@ struct CsvOptions {
 
 /// The columns, in this order: those of a tick; the channels of the robot, "NAME" or "NAME[0]",
 /// "NAME[1]"; those of a frame; "sonar[0]" and "bumper[0]" in the order of their first readings;
-/// the commanded rates of the joints; the controller's measures; the arrays.
+/// the commanded rates of the joints; the arm's; the controller's measures; the arrays.
 class RunCsv {
  public:
   /// `run` must have its document. Reads the whole run once, up to a damaged block, to learn which
@@ -43,6 +45,7 @@ class RunCsv {
   using Mounts = std::vector<algo::Pose2>;  // of a ring's sensors
 
   void learn(const algo::Telemetry& t);
+  std::span<const FrameColumn> own_arm() const;
   void put_rings(std::string& out, const algo::Observation& o) const;
   void put_arrays(std::string& out, const algo::Telemetry& t) const;
 
@@ -52,6 +55,7 @@ class RunCsv {
   Mounts sonar_{}, bumpers_{}, scanners_{};
   bool infrared_ = false;
   std::size_t joints_ = 0;
+  bool arm_ = false;
   FrameMeasures measures_{};
 };
 

@@ -12,6 +12,7 @@
 #include "server/record/frame_codec.hpp"
 #include "server/record/run_json.hpp"
 #include "server/run/json_limits.hpp"
+#include "server/run/obstacle_json.hpp"
 #include "server/run/run_spec.hpp"
 
 namespace server {
@@ -51,6 +52,15 @@ algo::ControllerCatalogue recorded(const std::string& controller) {
                                      }}});
 }
 
+/// The pieces that a robot with an arm knew from the start.
+std::vector<algo::Obstacle> declared_in(const nlohmann::json& document) {
+  std::vector<algo::Obstacle> pieces;
+  for (const nlohmann::json& piece : document.at("scenario").at("obstacles")) {
+    pieces.push_back(obstacle_from_json(piece, "obstacles"));
+  }
+  return pieces;
+}
+
 algo::Pipeline pipeline_of(const db::RunRow& row) {
   const nlohmann::json document = parse_json(row.what.document, kOwnDocument);
   const algo::RobotSpec spec = robot_spec_from_json(document.at("robot"));
@@ -58,6 +68,7 @@ algo::Pipeline pipeline_of(const db::RunRow& row) {
   config.controller = row.what.controller;
   config.filter = stored_filter(row);
   config.parameters = stored_parameters(row);
+  if (spec.arm) config.declared = declared_in(document);
   if (document.contains("answers")) {
     return {config, spec, recorded(config.controller)};
   }
@@ -93,13 +104,15 @@ class Comparison {
     pipeline_.tick(t_);
     ++result_.compared;
     if (decided(t_) == stored) return;
-    result_.difference =
-        fmt::format("Tick {}: stored v {:.17g} omega {:.17g}, now v {:.17g} omega {:.17g}.",
-                    t_.tick,
-                    stored.command.base.v,
-                    stored.command.base.omega,
-                    t_.command.base.v,
-                    t_.command.base.omega);
+    result_.difference = fmt::format(
+        "Tick {}: stored v {:.17g} omega {:.17g}, now v {:.17g} omega {:.17g}.{}",
+        t_.tick,
+        stored.command.base.v,
+        stored.command.base.omega,
+        t_.command.base.v,
+        t_.command.base.omega,
+        stored.command.joint_rates == t_.command.joint_rates ? ""
+                                                             : " The rates of the joints differ.");
   }
 
   std::string why_missing(std::uint64_t first, std::uint64_t last) const {

@@ -11,7 +11,9 @@ bool is_goal(const algo::Request& request) {
   const auto* list = std::get_if<algo::SetGoals>(&request);
   return std::holds_alternative<algo::SetGoal>(request) ||
          std::holds_alternative<algo::AddGoal>(request) ||
-         (list != nullptr && !list->goals.empty());
+         std::holds_alternative<algo::SetHandGoal>(request) ||
+         std::holds_alternative<algo::SetJoints>(request) ||
+         std::holds_alternative<algo::Carry>(request) || (list != nullptr && !list->goals.empty());
 }
 
 }  // namespace

@@ -30,7 +30,9 @@ class FreshOrders {
   /// The sum of all accepted requests, except obstacle edits.
   const algo::Intent& asked() const { return asked_; }
 
-  bool goal() const { return asked_.goal.has_value(); }
+  bool goal() const {
+    return asked_.goal || asked_.hand_goal || asked_.carry_goal || asked_.joint_goal;
+  }
   bool stick() const { return asked_.stick != algo::Joystick{}; }  // the stick is not at rest
 
  private:

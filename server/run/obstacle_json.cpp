@@ -30,6 +30,7 @@ void read_wall(const JsonReader& in, algo::Obstacle& obstacle) {
            "length",
            "thickness",
            "height",
+           "bottom",
            "reflectivity",
            "specular",
            "path"});
@@ -50,8 +51,17 @@ void read_wall(const JsonReader& in, algo::Obstacle& obstacle) {
 /// Points are given in W. The obstacle's frame is put at their mean, so that it moves by its
 /// centre.
 void read_polygon(const JsonReader& in, algo::Obstacle& obstacle) {
-  in.only(
-      {"id", "type", "points", "x", "y", "heading", "height", "reflectivity", "specular", "path"});
+  in.only({"id",
+           "type",
+           "points",
+           "x",
+           "y",
+           "heading",
+           "height",
+           "bottom",
+           "reflectivity",
+           "specular",
+           "path"});
   algo::Polygon polygon;
   algo::Vec2 sum{0, 0};
   in.each("points", kMaxPolygonPoints, [&](const json& point, const std::string& at) {
@@ -117,6 +127,7 @@ algo::Obstacle obstacle_from_json(const json& value, const std::string& path) {
              "heading",
              "radius",
              "height",
+             "bottom",
              "reflectivity",
              "specular",
              "path"});
@@ -131,6 +142,7 @@ algo::Obstacle obstacle_from_json(const json& value, const std::string& path) {
              "length",
              "width",
              "height",
+             "bottom",
              "reflectivity",
              "specular",
              "path"});
@@ -151,6 +163,7 @@ algo::Obstacle obstacle_from_json(const json& value, const std::string& path) {
                     type));
   }
   obstacle.height = in.number_or("height", obstacle.height);
+  obstacle.bottom = in.number_or("bottom", obstacle.bottom);
   obstacle.reflectivity = in.number_or("reflectivity", obstacle.reflectivity);
   obstacle.specular = in.flag_or("specular", false);
   if (in.has("path")) obstacle.path = path_from_json(in.object("path"));
@@ -199,6 +212,7 @@ json to_json(const algo::Obstacle& o) {
         }
       },
       o.shape);
+  if (o.bottom > 0) out["bottom"] = o.bottom;
   if (o.path) out["path"] = to_json(*o.path);
   return out;
 }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "algo/pipeline/parameter_table.hpp"
+#include "server/run/arm_json.hpp"
 #include "server/run/json_reader.hpp"
 #include "server/run/obstacle_json.hpp"
 #include "server/run/pose_json.hpp"
@@ -72,10 +73,22 @@ algo::Request request_from_json(const nlohmann::json& value) {
     if (parameter == nullptr) in.fail("name", fmt::format("there is no parameter '{}'", name));
     return algo::SetParameter{parameter, in.number("value")};
   }
+  if (type == "set_joints") {
+    in.only({"type", "position"});
+    return algo::SetJoints{joint_values(in, "position", {-10, 10})};
+  }
+  if (type == "set_hand_goal") {
+    in.only(kHandGoalFields);
+    return hand_goal_from_json(in);
+  }
+  if (type == "carry") {
+    in.only({"type", "x", "y", "heading"});
+    return algo::Carry{goal_from_json(in)};
+  }
   in.fail("type",
           fmt::format("'{}' is unknown; known are set_goal, add_goal, set_goals, clear_goal, "
                       "add_obstacle, change_obstacle, move_obstacle, remove_obstacle, joystick, "
-                      "stop, set_parameter",
+                      "stop, set_parameter, set_joints, set_hand_goal, carry",
                       type));
 }
 

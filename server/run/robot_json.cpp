@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "server/run/arm_json.hpp"
 #include "server/run/json_fields.hpp"
 #include "server/run/library_files.hpp"
 #include "server/run/sensor_json.hpp"
@@ -107,7 +108,7 @@ sim::RobotModel robot_from_json(const JsonReader& in) {
            "mass_height", "track",        "wheels",        "wheel_radius", "casters",
            "limits",      "friction",     "lasers",        "sonar",        "infrared",
            "sensors",     "gyro",         "bumpers",       "encoders",     "counts_per_turn",
-           "line_camera", "inclinometer", "floor_sensors", "climbs"});
+           "line_camera", "inclinometer", "floor_sensors", "climbs",       "arm"});
   sim::RobotModel robot;
   robot.name = in.text("name", 64);
   if (!valid_name(robot.name)) {
@@ -128,6 +129,7 @@ sim::RobotModel robot_from_json(const JsonReader& in) {
   if (in.has("climbs")) {
     read_only_fields(in.object("climbs"), kClimbs, robot.climbs.emplace());
   }
+  robot.arm = arm_from_json(in);
   read_sensors(in, robot.sensors);
   if (const auto problem = sim::defect(robot)) refuse(in, *problem);
   return robot;
@@ -155,6 +157,7 @@ json to_json(const sim::RobotModel& robot) {
               {"friction", robot.friction},
               {"counts_per_turn", robot.counts_per_turn}};
   if (robot.climbs) out["climbs"] = written(kClimbs, *robot.climbs);
+  if (robot.arm) out["arm"] = to_json(*robot.arm);
   return out;
 }
 

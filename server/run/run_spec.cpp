@@ -10,6 +10,7 @@
 #include "algo/filter/filter.hpp"
 #include "algo/pipeline/controllers.hpp"
 #include "algo/pipeline/parameter_table.hpp"
+#include "server/run/arm_json.hpp"
 #include "server/run/fleet_robot.hpp"
 #include "server/run/ground_json.hpp"
 #include "server/run/hardware.hpp"
@@ -114,6 +115,11 @@ std::vector<RobotPlan> plans_of_others(const RunSpec& spec) {
   return plans;
 }
 
+/// A robot without an arm makes no use of them.
+std::vector<algo::Obstacle> declared_of(const sim::Scenario& scenario) {
+  return scenario.robot.arm ? scenario.obstacles : std::vector<algo::Obstacle>{};
+}
+
 }  // namespace
 
 std::vector<algo::SetGoal> way_of(const sim::Scenario& scenario) {
@@ -197,7 +203,8 @@ algo::PipelineConfig pipeline_config(const RunSpec& spec) {
   return {.controller = spec.scenario.controller,
           .filter = *algo::find_filter(spec.scenario.filter),
           .parameters = spec.parameters,
-          .run = {.scenario = spec.scenario.name, .seed = spec.seed}};
+          .run = {.scenario = spec.scenario.name, .seed = spec.seed},
+          .declared = declared_of(spec.scenario)};
 }
 
 const algo::ControllerCatalogue& controllers_of(const RunSpec& spec) {
@@ -210,13 +217,16 @@ bool drives_from_outside(const RunSpec& spec) {
 
 std::vector<algo::Request> first_requests(const RunSpec& spec) {
   if (!spec.scenario.log.empty()) return {};
-  return requests_of(way_of(spec.scenario));
+  if (spec.scenario.carry) return {algo::Carry{*spec.scenario.goal}};
+  std::vector<algo::Request> requests = requests_of(way_of(spec.scenario));
+  if (spec.scenario.hand_goal) requests.emplace_back(*spec.scenario.hand_goal);
+  return requests;
 }
 
 double time_limit(const RunSpec& spec) {
   if (!spec.scenario.log.empty()) return 0;
   if (spec.scenario.time_limit > 0) return spec.scenario.time_limit;
-  if (!spec.scenario.goal) return 60.0;
+  if (!spec.scenario.goal) return spec.scenario.hand_goal ? 120.0 : 60.0;
   double way = 0;
   algo::Vec2 from_W = spec.scenario.start.position();
   for (const algo::SetGoal& goal : way_of(spec.scenario)) {
@@ -277,6 +287,7 @@ json to_json(const algo::RobotSpec& robot) {
   out["name"] = robot.name;
   out["channels"] = std::move(channels);
   write_ground(robot, out);
+  if (robot.arm) out["arm"] = spec_json(*robot.arm);
   return out;
 }
 
@@ -290,6 +301,7 @@ algo::RobotSpec robot_spec_from_json(const json& value) {
     for (const json& each : list) robot.channels.push_back(channel_from_json({each, "robot"}));
   }
   read_ground(in, robot);
+  robot.arm = arm_spec_from_json(in);
   return robot;
 }
 

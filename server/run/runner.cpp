@@ -1,6 +1,7 @@
 // server/run/runner.cpp: the control loop.
 #include "server/run/runner.hpp"
 
+#include <array>
 #include <cmath>
 #include <thread>
 #include <utility>
@@ -35,13 +36,26 @@ std::string account_of(const algo::RobotError& error) {
       last.command.base.v);
 }
 
+/// Of the part in contact.
+const char* touch_sentence(const algo::Telemetry& t) {
+  static constexpr std::array<const char*, algo::kBodyLinks> kSentences{
+      "The hull touched an obstacle.",
+      "The arm's mast touched something.",
+      "The upper arm touched something.",
+      "The forearm touched something.",
+      "The hand touched something."};
+  const auto link = t.ground_truth ? t.ground_truth->touched : std::nullopt;
+  return kSentences.at(static_cast<std::size_t>(link.value_or(algo::BodyLink::Base)));
+}
+
 }  // namespace
 
 bool Stillness::lasts(const algo::Telemetry& t, double span) {
   const double now = t.observation.stamp;
   const algo::Twist2& twist = t.observation.odometry.twist;
   const bool moves = std::abs(twist.v) > kStandingSpeed || std::abs(twist.omega) > kStandingTurn ||
-                     t.command.base != algo::Twist2{};
+                     t.command.base != algo::Twist2{} ||
+                     t.command.joint_rates != algo::Command{}.joint_rates;
   const bool event = moves || !t.requests.empty() || t.mission == algo::Mission::Driving ||
                      t.mission != mission_ || t.hold != hold_;
   mission_ = t.mission;
@@ -151,6 +165,7 @@ void Run::tick() {
   algo::Telemetry& t = frame_->telemetry;
   now_ = t.observation.stamp;
   serve_requests();
+  if (pipeline_.plan_ready()) accept(algo::TakePlan{});
   t.requests = pending_;
   pending_.clear();
   pipeline_.tick(t);
@@ -282,7 +297,9 @@ bool Run::wrecked() const {
 void Run::judge(const algo::Telemetry& t) {
   if (wrecked()) return;
   for (const algo::Request& request : t.requests) {
-    const bool new_goal = std::holds_alternative<algo::SetGoal>(request);
+    const bool new_goal = std::holds_alternative<algo::SetGoal>(request) ||
+                          std::holds_alternative<algo::SetHandGoal>(request) ||
+                          std::holds_alternative<algo::Carry>(request);
     if (new_goal && !metrics_.metrics().collided) set_outcome(Outcome::Running);
   }
   if (t.ground_truth && t.ground_truth->overturned) {
@@ -290,11 +307,13 @@ void Run::judge(const algo::Telemetry& t) {
   } else if (t.ground_truth && t.ground_truth->fallen) {
     set_outcome(Outcome::Fallen, "The robot drove off an edge. Reset sets it back to its start.");
   } else if (metrics_.metrics().collided) {
-    set_outcome(Outcome::Collided, "The hull touched an obstacle.");
+    set_outcome(Outcome::Collided, touch_sentence(t));
   } else if (t.mission == algo::Mission::Arrived) {
     set_outcome(Outcome::Reached);
   } else if (t.mission == algo::Mission::Stuck) {
-    set_outcome(Outcome::Stuck, "The robot made no way towards its goal.");
+    const bool hand = t.arm.state == algo::ArmState::GivenUp;
+    set_outcome(Outcome::Stuck,
+                hand ? t.words.why.c_str() : "The robot made no way towards its goal.");
   } else if (policy_.time_limit > 0 && t.observation.stamp >= policy_.time_limit - kRounding) {
     set_outcome(Outcome::OutOfTime, "The time limit was over before the goal was reached.");
   } else if (t.mission == algo::Mission::Driving) {

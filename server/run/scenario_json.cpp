@@ -7,6 +7,7 @@
 
 #include "algo/filter/filter.hpp"
 #include "algo/pipeline/parameter_table.hpp"
+#include "server/run/arm_json.hpp"
 #include "server/run/library_files.hpp"
 #include "server/run/motion_json.hpp"
 #include "server/run/pose_json.hpp"
@@ -36,6 +37,21 @@ void read_obstacles(const JsonReader& in, sim::Scenario& scenario) {
     ids.insert(next);
     obstacle.id = next;
   }
+}
+
+void read_arm_goals(const JsonReader& in, sim::Scenario& scenario) {
+  for (const char* key : {"hand_goal", "joints", "carry"}) {
+    if (in.has(key) && !scenario.robot.arm) in.fail(key, "needs a robot with an arm");
+  }
+  if (in.has("joints")) scenario.joints = joint_values(in, "joints", {-10, 10});
+  scenario.carry = in.flag_or("carry", false);
+  if (scenario.carry && !scenario.goal) in.fail("carry", "leads nowhere: there is no goal");
+  if (scenario.carry && !scenario.waypoints.empty()) in.fail("carry", "knows no waypoints");
+  if (!in.has("hand_goal")) return;
+  if (scenario.goal) in.fail("hand_goal", "cannot stand beside goal");
+  const JsonReader goal = in.object("hand_goal");
+  goal.only(kHandGoalFields);
+  scenario.hand_goal = hand_goal_from_json(goal);
 }
 
 void read_choices(const JsonReader& in, sim::Scenario& scenario) {
@@ -95,11 +111,12 @@ std::optional<sim::PhysicsKind> physics_from_json(const JsonReader& in) {
 
 sim::Scenario scenario_from_json(const json& document, const RobotLibrary& robots) {
   const JsonReader in(document, "");
-  in.only({"name",       "title",   "description", "robot",        "physics",      "period",
-           "start",      "goal",    "drive",       "obstacles",    "lasers",       "sonar",
-           "infrared",   "sensors", "gyro",        "bumpers",      "encoders",     "localization",
-           "controller", "filter",  "parameters",  "time_limit",   "waypoints",    "loop",
-           "robots",     "vehicle", "line_camera", "inclinometer", "floor_sensors"});
+  in.only({"name",       "title",   "description", "robot",        "physics",       "period",
+           "start",      "goal",    "drive",       "obstacles",    "lasers",        "sonar",
+           "infrared",   "sensors", "gyro",        "bumpers",      "encoders",      "localization",
+           "controller", "filter",  "parameters",  "time_limit",   "waypoints",     "loop",
+           "robots",     "vehicle", "line_camera", "inclinometer", "floor_sensors", "hand_goal",
+           "joints",     "carry"});
   sim::Scenario s;
   s.name = in.text("name", 64);
   if (!valid_name(s.name)) {
@@ -121,6 +138,7 @@ sim::Scenario scenario_from_json(const json& document, const RobotLibrary& robot
     in.fail("localization", "must be \"encoders\" or \"gyro\"");
   }
   s.localization = localization == "gyro" ? sim::Localization::Gyro : sim::Localization::Encoders;
+  read_arm_goals(in, s);
   read_choices(in, s);
   s.time_limit = in.number_or("time_limit", 0, {0.0, 1e6});
   read_robots(in, robots, s);
@@ -146,6 +164,9 @@ json to_json(const sim::Scenario& s) {
     if (value != parameter->initial) out["parameters"][std::string(parameter->key())] = value;
   }
   if (s.loop) out["loop"] = true;
+  if (s.hand_goal) out["hand_goal"] = to_json(*s.hand_goal);
+  if (s.carry) out["carry"] = true;
+  if (s.joints) out["joints"] = *s.joints;
   write_sensors(s.robot.sensors, out);
   if (s.localization == sim::Localization::Gyro) out["localization"] = "gyro";
   for (const algo::Obstacle& obstacle : s.obstacles) out["obstacles"].push_back(to_json(obstacle));

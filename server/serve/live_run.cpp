@@ -2,7 +2,10 @@
 #include "server/serve/live_run.hpp"
 
 #include <chrono>
+#include <memory>
 #include <utility>
+
+#include "server/run/planning_thread.hpp"
 
 namespace server {
 namespace {
@@ -24,6 +27,7 @@ RunPolicy live_policy(const RunSpec& spec, bool require_record) {
 algo::PipelineConfig live_config(const RunSpec& spec, const std::stop_source& stop) {
   algo::PipelineConfig config = pipeline_config(spec);
   config.run.stop = stop.get_token();
+  config.thinker = [] { return std::make_unique<PlanningThread>(); };
   return config;
 }
 

@@ -48,8 +48,9 @@ json obstacle_entity(double stamp, const algo::Obstacle& o) {
   json entity = entity_json(stamp, fmt::format("obstacle-{}", o.id), "map");
   if (const auto* cylinder = std::get_if<algo::Cylinder>(&o.shape)) {
     entity["cylinders"].push_back(
-        {{"pose", pose_json(o.pose_W, o.height / 2)},
-         {"size", {{"x", 2 * cylinder->radius}, {"y", 2 * cylinder->radius}, {"z", o.height}}},
+        {{"pose", pose_json(o.pose_W, (o.bottom + o.height) / 2)},
+         {"size",
+          {{"x", 2 * cylinder->radius}, {"y", 2 * cylinder->radius}, {"z", o.height - o.bottom}}},
          {"bottom_scale", 1.0},
          {"top_scale", 1.0},
          {"color", to_json(kObstacle)}});

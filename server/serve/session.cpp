@@ -29,6 +29,10 @@ bool is_goal(const algo::Request& request) {
          std::holds_alternative<algo::ClearGoal>(request);
 }
 
+bool has_goal(const algo::Intent& asked) {
+  return asked.goal || asked.hand_goal || asked.carry_goal;
+}
+
 }  // namespace
 
 Session::Session(const RunHouse& house, std::function<void()> news)
@@ -344,12 +348,13 @@ void Session::drain_replies() {
 
 /// Applies a request that the control thread has accepted to the mirror of its state.
 void Session::adopt(const algo::Request& request) {
-  const bool had_goal = state_.asked.goal.has_value();
+  const bool had_goal = has_goal(state_.asked);
   state_.asked.apply(request);
   if (is_goal(request)) state_.route = {state_.asked.route(), 0, state_.asked.loop};
   if (is_goal(request) || algo::is_edit(request)) note_edits();
   const bool stick = std::holds_alternative<algo::Joystick>(request);
-  if (stick && had_goal && !state_.asked.goal) changed();  // taking the stick cancels the goals
+  if (stick && had_goal && !state_.asked.goal && !state_.asked.hand_goal)
+    changed();  // taking the stick cancels the goals
 }
 
 /// Advances the mirror's goal when the robot has moved on. A frame may be older than the newest

@@ -4,6 +4,7 @@
 #include "algo/filter/filter.hpp"
 #include "algo/pipeline/controllers.hpp"
 #include "algo/pipeline/parameter_table.hpp"
+#include "server/run/arm_json.hpp"
 #include "server/run/hardware.hpp"
 #include "server/run/json_reader.hpp"
 #include "server/run/paths.hpp"
@@ -59,6 +60,11 @@ json state_json(const Session& session) {
   for (const algo::SetGoal& goal : s.asked.goals_behind) {
     out["goals_behind"].push_back(to_json(goal));
   }
+  if (s.robot.arm) {
+    out["hand_goal"] = s.asked.hand_goal ? to_json(*s.asked.hand_goal) : json(nullptr);
+    out["carry_goal"] = s.asked.carry_goal ? to_json(*s.asked.carry_goal) : json(nullptr);
+    out["joint_goal"] = s.asked.joint_goal ? json(s.asked.joint_goal->position) : json(nullptr);
+  }
   out["robot"]["editable"] = s.editable;
   out["robot"]["paceable"] = !s.spec.hardware;
   if (s.problem) out["problem"] = without_folders(*s.problem);
@@ -86,6 +92,8 @@ json session_json(const Session& session) {
   out["mission"] = algo::name(t.mission);
   out["hold"] = algo::name(t.hold);
   out["behaviour"] = t.behaviour.view();
+  if (t.observation.joints) out["joints"] = t.observation.joints->position;
+  if (t.arm.present) out["arm"] = name(t.arm.state);
   out["what"] = t.words.what;
   out["why"] = t.words.why;
   return out;

@@ -1,4 +1,5 @@
-// tests/bench/arm_rows.cpp: the arm's inverse, and the sweeps of its strip.
+// tests/bench/arm_rows.cpp: the arm's inverse, the sweeps of its strip, and whole ticks with it.
+#include <algorithm>
 #include <vector>
 
 #include "tests/algo/arm/carried_arm.hpp"
@@ -7,6 +8,9 @@
 #include <fmt/format.h>
 
 #include "algo/arm/body_strip.hpp"
+#include "algo/pipeline/arm_behaviour.hpp"
+#include "server/record/headless.hpp"
+#include "server/run/scenario_library.hpp"
 
 namespace bench {
 namespace {
@@ -40,9 +44,47 @@ void check_inverse(const std::vector<algo::Pose3>& poses) {
   }
 }
 
+/// One run that carries the arm past a post, without a viewer or a record.
+/// @return simulated seconds per second of CPU time
+double carry_once(double step_rate, double sweeps) {
+  server::RunSpec spec = server::make_spec(server::ScenarioLibrary({}, {}).load("arm_post"), {});
+  spec.scenario.robot.arm->step_rate = step_rate;
+  spec.parameters.set(algo::kArmSweeps, sweeps);
+  const auto robot = server::make_robot(spec);
+  const double before = process_cpu();
+  const server::HeadlessResult run = server::run_headless(spec, *robot, {}, {});
+  require(run.run.outcome == algo::Outcome::Reached, "P26: the arm was not carried to its goal");
+  return run.run.metrics.time / (process_cpu() - before);
+}
+
+/// The whole tick: scanners, physics, strip, guard and gate.
+void whole_ticks(Pass& pass) {
+  struct Row {
+    double step_rate, sweeps, floor, stretch;
+  };
+  for (const Row& row : {Row{240, 20, 15, 30}, Row{1000, 50, 5, 10}}) {
+    std::vector<double> times;
+    for (int k = 0; k < pass.count(3, 1); ++k)
+      times.push_back(carry_once(row.step_rate, row.sweeps));
+    std::ranges::sort(times);
+    const double middle = times[times.size() / 2];
+    pass.add({.row = "P26",
+              .name = fmt::format(
+                  "a run with the arm, {} Hz, {} sweeps a tick", row.step_rate, row.sweeps),
+              .value = middle,
+              .unit = "x real time",
+              .better = Better::Higher,
+              .floor = row.floor,
+              .stretch = row.stretch,
+              .noise = (times.back() - times.front()) / middle,
+              .note = "Bullet, carried past a post"});
+  }
+}
+
 }  // namespace
 
 void arms(Pass& pass) {
+  whole_ticks(pass);
   const algo::ArmGeometry arm;
   const auto poses = hands(pass.count<std::size_t>(256, 16));
   check_inverse(poses);

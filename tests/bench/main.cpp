@@ -33,7 +33,7 @@ constexpr std::array<Family, 13> kFamilies{{
     {"P19 P20 P21", bench::storage},
     {"P22", bench::timers},
     {"P23", bench::external},
-    {"P24", bench::arms},
+    {"P24 P26", bench::arms},
     {"P25", bench::terrain},
 }};
 constexpr std::string_view kElsewhere =

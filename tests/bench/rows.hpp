@@ -16,7 +16,7 @@ void headless(Pass& pass);   // P9
 void streaming(Pass& pass);  // P14 P16 P17
 void timers(Pass& pass);     // P22
 void external(Pass& pass);   // P23
-void arms(Pass& pass);       // P24
+void arms(Pass& pass);       // P24 P26
 void terrain(Pass& pass);    // P25
 
 }  // namespace bench

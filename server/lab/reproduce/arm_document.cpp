@@ -5,6 +5,7 @@
 #include "server/experiment/table.hpp"
 #include "server/lab/reproduce/arm_study.hpp"
 #include "server/lab/reproduce/marked.hpp"
+#include "server/lab/reproduce/session_reach.hpp"
 #include "server/run/text_file.hpp"
 
 namespace server::reproduce {
@@ -107,6 +108,17 @@ Table arm_findings_table(const ArmStudy& study) {
 }
 
 }  // namespace
+
+std::string to_text(const ReachStudy& study) {
+  return fmt::format("{}\n{}\n",
+                     experiment::to_text(reach_table(study)),
+                     experiment::to_text(reasons_table(study)));
+}
+
+nlohmann::json to_json(const ReachStudy& study) {
+  return {{"reaches", experiment::to_json(reach_table(study))},
+          {"reasons", experiment::to_json(reasons_table(study))}};
+}
 
 std::string to_text(const ArmStudy& study) {
   return fmt::format(

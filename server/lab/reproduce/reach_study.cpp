@@ -54,7 +54,8 @@ Reach reach_in(const ReachWorld& world, std::uint64_t seed) {
   const algo::MobileArm body;
   algo::BodyJoints q = algo::body_joints({}, algo::folded_arm());
   ReachTask task(body, {});
-  task.begin(q, world.hand_W, world.solids, seed);
+  task.begin(q, {world.hand_W}, world.solids, seed);
+  answer_at_once(task, body, q, world.solids);
   result.reachable =
       !task.legs().empty() || !reach_places(body, q.head<2>(), world.hand_W, world.solids).empty();
   if (!task.legs().empty()) {
@@ -65,6 +66,7 @@ Reach reach_in(const ReachWorld& world, std::uint64_t seed) {
   result.clearance = body_room(body, q, world.solids);
   while (task.state() != ReachTask::State::GivenUp && result.seconds < kReachEnd) {
     const algo::BodyCommand command = task.update(q, world.solids, kReachTick);
+    answer_at_once(task, body, q, world.solids);
     if (task.state() == ReachTask::State::Arrived) break;
     for (int part = 1; part <= kReachParts; ++part) {
       const algo::BodyJoints between = moved(q, command, kReachTick * part / kReachParts);
@@ -80,25 +82,32 @@ Reach reach_in(const ReachWorld& world, std::uint64_t seed) {
   return result;
 }
 
+ReachTrials trials_of(std::string_view scene, std::span<const Reach> reaches) {
+  ReachTrials row;
+  row.scene = scene;
+  row.clearance = kUnbounded;
+  for (const Reach& one : reaches) {
+    if (one.reachable) add(one, row);
+  }
+  finish(row);
+  return row;
+}
+
 ReachStudy study_reach(std::size_t worlds) {
   ReachStudy study;
-  study.all.scene = "all";
-  study.all.clearance = kUnbounded;
+  std::vector<Reach> all;
   for (const ReachScene scene : kReachScenes) {
-    ReachTrials row;
-    row.scene = words(scene);
-    row.clearance = kUnbounded;
-    for (std::uint64_t seed = 0; row.worlds < worlds && seed < kMostDrawn * worlds; ++seed) {
-      const Reach one = reach_in(random_world(scene, seed), seed);
+    std::vector<Reach> of_scene;
+    std::size_t counted = 0;
+    for (std::uint64_t seed = 0; counted < worlds && seed < kMostDrawn * worlds; ++seed) {
+      const Reach& one = of_scene.emplace_back(reach_in(random_world(scene, seed), seed));
       if (!one.reached) ++study.why[one.words];
-      if (!one.reachable) continue;
-      add(one, row);
-      add(one, study.all);
+      if (one.reachable) ++counted;
     }
-    finish(row);
-    study.scenes.push_back(std::move(row));
+    study.scenes.push_back(trials_of(words(scene), of_scene));
+    all.insert(all.end(), of_scene.begin(), of_scene.end());
   }
-  finish(study.all);
+  study.all = trials_of("all", all);
   return study;
 }
 

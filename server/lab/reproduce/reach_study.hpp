@@ -3,7 +3,9 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "server/lab/reproduce/reach_world.hpp"
@@ -46,6 +48,9 @@ struct ReachStudy {
   /// because no robot could.
   std::map<std::string, std::size_t> why{};
 };
+
+/// The row of those of `reaches` whose goal is reachable.
+ReachTrials trials_of(std::string_view scene, std::span<const Reach> reaches);
 
 /// `worlds` with a reachable goal of each scene; the same study each time, bit for bit.
 ReachStudy study_reach(std::size_t worlds);

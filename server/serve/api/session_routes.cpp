@@ -3,12 +3,14 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "algo/pipeline/parameter_table.hpp"
+#include "server/run/arm_json.hpp"
 #include "server/run/json_reader.hpp"
 #include "server/run/obstacle_json.hpp"
 #include "server/run/request_json.hpp"
@@ -279,10 +281,11 @@ using SessionHandler =
     std::function<void(OpenSession&, const net::Request&, const net::Responder&)>;
 
 /// A route whose body is a goal, for a request of `type`.
-SessionHandler goal_route(const char* type) {
-  return [type](OpenSession& open, const net::Request& request, const net::Responder& respond) {
+SessionHandler goal_route(const char* type, std::vector<std::string_view> fields) {
+  return [type, fields = std::move(fields)](
+             OpenSession& open, const net::Request& request, const net::Responder& respond) {
     json body = body_json(request);
-    JsonReader(body, "").only({"x", "y", "heading"});
+    JsonReader(body, "").only(fields);
     body["type"] = type;
     submit_and_reply(open.session(), {request_from_json(body), {}}, request, respond);
   };
@@ -409,8 +412,12 @@ void add_session_routes(net::Router& router, ApiContext& context) {
                          request,
                          respond);
       });
-  routes.add("PUT", "/goal", goal_route("set_goal"));
-  routes.add("POST", "/goal", goal_route("add_goal"));
+  routes.add("PUT", "/goal", goal_route("set_goal", {"x", "y", "heading"}));
+  routes.add("POST", "/goal", goal_route("add_goal", {"x", "y", "heading"}));
+  routes.add("PUT",
+             "/hand_goal",
+             goal_route("set_hand_goal", {kHandGoalFields.begin() + 1, kHandGoalFields.end()}));
+  routes.add("PUT", "/joints", goal_route("set_joints", {"position"}));
   routes.add(
       "DELETE", "/goal", [](OpenSession& open, const Request& request, const Responder& respond) {
         submit_and_reply(open.session(), {algo::ClearGoal{}, {}}, request, respond);

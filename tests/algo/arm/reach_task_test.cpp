@@ -17,10 +17,12 @@ constexpr double kReachTick = 0.05;  // [s]
 /// A body that moves as commanded, while things move on.
 struct ReachDrive {
   explicit ReachDrive(const Scene& which) : scene(which), task(which.body, {}) {
-    task.begin(scene.start, scene.hand_W, scene.solids, 5);
+    task.begin(scene.start, {scene.hand_W}, scene.solids, 5);
+    answer_at_once(task, scene.body, q, scene.solids);
   }
   void tick() {
     const algo::BodyCommand command = task.update(q, scene.solids, kReachTick);
+    answer_at_once(task, scene.body, q, scene.solids);
     waited = waited || task.state() == ReachTask::State::Waits;
     q = moved(q, command, kReachTick);
     for (algo::Solid& solid : scene.solids) solid = solid.after(kReachTick);

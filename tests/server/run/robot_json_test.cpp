@@ -87,7 +87,7 @@ TEST(RobotJson, TheRobhazCarriesItsRingAtEitherHeight) {
 
 TEST(RobotJson, BuiltInRobotsComeBackFromTheirText) {
   const std::vector<RobotEntry> entries = RobotLibrary().list();
-  EXPECT_EQ(entries.size(), 5U);
+  EXPECT_EQ(entries.size(), 6U);
   for (const RobotEntry& entry : entries) {
     SCOPED_TRACE(entry.name);
     EXPECT_TRUE(entry.builtin && entry.usable);
@@ -96,11 +96,46 @@ TEST(RobotJson, BuiltInRobotsComeBackFromTheirText) {
     const sim::RobotModel again = read_robot(robot_document(robot));
     EXPECT_TRUE(static_cast<const sim::Machine&>(robot) == again);
     EXPECT_EQ(robot_document(robot), robot_document(again));
-    // A name implies the default sensors; a robot with a ring or floor sensors is written out.
+    // A name implies the default sensors; a robot with others is written out.
     const json reference = robot_reference(robot);
-    const bool own = robot.sensors.sonar || robot.sensors.floor;
+    const bool own = robot.sensors.sonar || robot.sensors.floor || robot.sensors.lasers.size() != 1;
     EXPECT_EQ(reference.is_string(), !own);
     EXPECT_EQ(reference.is_string() ? reference : reference["name"], entry.name);
+  }
+}
+
+TEST(RobotJson, AnArmIsReadWithItsDefaultsAndItsSpecIsExact) {
+  const sim::RobotModel robot = builtin_robot("silvermate_arm");
+  ASSERT_TRUE(robot.arm);
+  EXPECT_EQ(robot.arm->masses, sim::ArmModel{}.masses);
+  const algo::RobotSpec spec = spec_of(robot, 0.026);
+  ASSERT_TRUE(spec.arm);
+  EXPECT_EQ(spec.arm->base_height, robot.hull_high);
+  EXPECT_EQ(*robot_spec_from_json(to_json(spec)).arm, *spec.arm);
+  EXPECT_FALSE(to_json(spec_of(builtin_robot("silvermate"), 0.026)).contains("arm"));
+}
+
+TEST(RobotJson, BadArmsGetASentenceThatNamesTheField) {
+  const std::vector<std::pair<const char*, const char*>> changes{
+      {R"({"mount": null})", "arm/mount: is missing"},
+      {R"({"mount": {"z": 0.3}})", "arm/mount/z: must be above the hull"},
+      {R"({"mount": {"roll": 1}})", "arm/mount: unknown field 'roll'"},
+      {R"({"shoulder_offset": 0.1})", "arm/shoulder_offset: must be 0: the inverse knows no other"},
+      {R"({"upper_arm": null})", "arm/upper_arm: is missing"},
+      {R"({"forearm": 0})", "arm/forearm: is 0, must lie in"},
+      {R"({"limits_deg": [170, 120]})", "arm/limits_deg: must be 7 numbers, one for each joint"},
+      {R"({"limits_deg": [170, 120, 170, 140, 170, 110, 270]})", "arm/limits_deg/6: is 270"},
+      {R"({"rates_deg": [0, 9, 9, 9, 9, 9, 9]})", "arm/rates_deg/0: is 0, must lie in"},
+      {R"({"rest_deg": [0, 0, 0, 0, 0, 0, 0]})", "arm/rest_deg: the folded arm would be -"},
+      {R"({"rest_deg": [0, 130, 0, 0, 0, 0, 0]})", "arm/rest_deg: joint 2 is beyond its limit"},
+      {R"({"torques": "strong"})", "arm/torques: must be"},
+      {R"({"payload": -1})", "arm/payload: is -1, must lie in"},
+      {R"({"gripper": 1})", "arm: unknown field 'gripper'"},
+  };
+  for (const auto& [patch, said] : changes) {
+    json document = robot_document(builtin_robot("silvermate_arm"));
+    document["arm"].merge_patch(json::parse(patch));
+    EXPECT_THAT(complaint(document), StartsWith(said)) << patch;
   }
 }
 
@@ -209,7 +244,7 @@ TEST_F(RobotFolder, InvalidFilesAreListedWithTheReasonAndNotLoaded) {
   } catch (const LibraryError& e) {
     EXPECT_STREQ(e.what(),
                  "'tank' is unknown; known are jackal, masuda, robhaz, robhaz_tall, silvermate, "
-                 "broken, carrier, "
+                 "silvermate_arm, broken, carrier, "
                  "other");
   }
   EXPECT_EQ(library.load_file_or_name((folder / "other.json").string()).name, "carrier");
