@@ -154,7 +154,7 @@ Way way_of(const Recording& recording, std::size_t k) {
   const algo::Vec2 middle = (recording.low + recording.high) / 2;
   const double heading = std::numbers::pi / 2 * static_cast<double>(k % 4);
   const std::array<algo::Vec2, 4> ways{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
-  const algo::Vec2 ahead = ways.at(k % 4);
+  const algo::Vec2& ahead = ways.at(k % 4);
   const algo::Vec2 half = ahead * (std::abs(ahead.dot(size)) / 2 - kEdge);
   const algo::Vec2 start = middle - half;
   return {.start_W = {start.x(), start.y(), algo::wrap_angle(heading)},
