@@ -234,7 +234,9 @@ TEST(ObstacleHeights, AFoldedArmIsInTheWayOfALowBeam) {
   algo::Observation seen;
   world.reset(seen);
   ASSERT_TRUE(seen.joints);
-  EXPECT_EQ(seen.joints->position, scenario.robot.arm->rest);
+  for (std::size_t i = 0; i < algo::kArmJoints; ++i) {
+    EXPECT_NEAR(seen.joints->position[i], scenario.robot.arm->rest[i], 1e-9);
+  }
   for (int k = 0; k < 100; ++k) world.step({.base = {0.4, 0}}, seen);
   const auto truth = world.ground_truth();
   EXPECT_TRUE(truth->collided);

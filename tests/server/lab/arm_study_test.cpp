@@ -2,6 +2,7 @@
 // among things: what the study finds.
 #include "server/lab/reproduce/arm_study.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "server/lab/reproduce/arm_course.hpp"
@@ -66,8 +67,8 @@ TEST(ReachStudy, AGoalInTheAirIsNotReachable) {
   const Reach one = reach_in(world, 0);
   EXPECT_FALSE(one.reachable);
   EXPECT_FALSE(one.reached);
-  EXPECT_EQ(one.words,
-            "From no place of the base does the hand reach its goal clear of everything.");
+  EXPECT_THAT(one.words,
+              ::testing::HasSubstr("m from the shoulder, and the farthest it can be is"));
 }
 
 TEST(ReachStudy, ASeedGivesOneWorld) {

@@ -18,6 +18,7 @@ const kLimits: Record<string, { what: string; why: string }> = {
   turnover_back: { what: "Slower backwards", why: "Nothing looks at the ground behind, and the robot is tall." },
   ground: { what: "Slower for the ground ahead", why: "The floor sensors do not see a level floor." },
   ground_silent: { what: "The floor sensors are silent", why: "The robot waits for them." },
+  arm: { what: "The arm is near something", why: "The motion would bring it too near." },
   elastic: { what: "The robot finds the way", why: "Your stick pulls its goal along; it goes round what is in between." },
 };
 /** Why the command is below the wanted one; null: nothing limits it. */
