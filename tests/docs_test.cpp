@@ -187,6 +187,10 @@ TEST(Docs, HardwareHasARowForEveryFaultOnEveryBase) {
       wanted.insert(fault.at("fault").get<std::string>().append(", ").append(base));
     }
   }
+  for (const auto& fault :
+       nlohmann::json::parse(text_of(root() / "tests/hardware/floor_faults.json"))) {
+    wanted.insert(fault.at("fault").get<std::string>().append(", roboteq"));
+  }
   EXPECT_EQ(rows, wanted);
 }
 
