@@ -135,7 +135,7 @@ std::optional<algo::FloorSensors> floor_of(const Sensors& sensors) {
 
 std::optional<algo::ArmSpec> arm_of(const RobotModel& robot) {
   if (!robot.arm) return std::nullopt;
-  algo::ArmSpec arm = *robot.arm;
+  algo::ArmSpec arm = static_cast<const algo::ArmSpec&>(*robot.arm);  // without its dynamics
   arm.base_height = robot.hull_high;
   if (!robot.sensors.lasers.empty()) arm.scan_height = robot.sensors.lasers.front().height;
   return arm;

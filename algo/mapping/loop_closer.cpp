@@ -282,6 +282,7 @@ std::vector<Loop> LoopCloser::believed(PoseGraph& graph) const {
     if (support(against) > most - kLead) return {};
   }
   std::vector<Loop> out;
+  out.reserve(chosen.size());
   for (const std::size_t i : chosen) out.push_back(pending_[i]);
   return out;
 }

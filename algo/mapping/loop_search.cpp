@@ -62,7 +62,7 @@ void LoopSearch::fill(const Submap& walls) {
     const int row = static_cast<int>(off.y());
     for (int dj = -1; dj <= 1; ++dj) {
       for (int di = -1; di <= 1; ++di) {
-        std::uint8_t& cell = cells[static_cast<std::size_t>((row + dj) * columns_ + column + di)];
+        std::uint8_t& cell = cells[cell_index(column + di, row + dj, columns_)];
         cell = std::max(cell, di == 0 && dj == 0 ? kOnWall : kBesideWall);
       }
     }
@@ -71,7 +71,7 @@ void LoopSearch::fill(const Submap& walls) {
 
 std::uint8_t LoopSearch::level(std::size_t height, int column, int row) const {
   if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return 0;
-  return levels_[height][static_cast<std::size_t>(row * columns_ + column)];
+  return levels_[height][cell_index(column, row, columns_)];
 }
 
 double LoopSearch::score(const Turned& turned, std::size_t height, int x, int y) const {

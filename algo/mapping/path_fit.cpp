@@ -131,6 +131,7 @@ std::vector<Pose2> fit_path(const KeyPath& keys,
                             std::span<const LaserScan> scans,
                             double reach) {
   std::vector<Pose2> keys_W;
+  keys_W.reserve(keys.scans.size());
   for (const KeyScan& key : keys.scans) {
     keys_W.push_back(compose(graph.pose(key.submap), key.pose));
   }

@@ -61,7 +61,7 @@ void Submap::keep_free(const OccupancyMap& map) {
     if (tally.passes < kSurePasses || tally.occupied()) return;
     const int column = (cell.i - low_.i * kBlock) / kBlock;
     const int row = (cell.j - low_.j * kBlock) / kBlock;
-    ++seen[static_cast<std::size_t>(row * free_columns_ + column)];
+    ++seen[cell_index(column, row, free_columns_)];
   });
   free_.resize(seen.size());
   for (std::size_t k = 0; k < seen.size(); ++k) free_[k] = seen[k] >= kFreeCells;
@@ -71,7 +71,7 @@ bool Submap::free(const Vec2& p) const {
   const int column = static_cast<int>(std::floor(p.x() / block_)) - low_.i;
   const int row = static_cast<int>(std::floor(p.y() / block_)) - low_.j;
   if (column < 0 || row < 0 || column >= free_columns_ || row >= free_rows_) return false;
-  return free_[static_cast<std::size_t>(row * free_columns_ + column)];
+  return free_[cell_index(column, row, free_columns_)];
 }
 
 bool Submap::wall_within(const Vec2& p, double reach) const {

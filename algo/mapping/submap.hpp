@@ -13,6 +13,12 @@
 
 namespace algo {
 
+/// The place of a cell among rows of `columns` cells. None of the arguments is negative.
+inline std::size_t cell_index(int column, int row, int columns) {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+         static_cast<std::size_t>(column);
+}
+
 /// The walls and the free space seen along some metres of way, in the frame of its first pose.
 class Submap {
  public:
