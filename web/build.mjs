@@ -4,7 +4,8 @@ import { execFileSync, spawnSync } from "node:child_process";
 import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { basename, dirname, extname, join } from "node:path";
 import { fileURLToPath } from "node:url";
-import { brotliCompressSync, constants, gzipSync } from "node:zlib";
+import { brotliCompressSync, constants } from "node:zlib";
+import zopfli from "@gfx/zopfli";
 import * as esbuild from "esbuild";
 
 const root = dirname(fileURLToPath(import.meta.url));
@@ -75,7 +76,7 @@ async function build_page() {
   });
   cpSync(join(root, "static"), dist, { recursive: true });
   name_parts(join(dist, "index.html"), metafile.outputs);
-  for (const name of readdirSync(dist)) compress(join(dist, name));
+  for (const name of readdirSync(dist)) await compress(join(dist, name));
 }
 
 /** Gives index.html the names of this build: of its script, its style, and the parts that the script begins with. */
@@ -92,10 +93,10 @@ function name_parts(index, outputs) {
 }
 
 /** Writes NAME.gz and NAME.br beside a text. Browsers take brotli over HTTPS only. */
-function compress(file) {
+async function compress(file) {
   if (![".html", ".js", ".css", ".svg"].includes(extname(file))) return;
   const text = readFileSync(file);
-  writeFileSync(`${file}.gz`, gzipSync(text, { level: 9 }));
+  writeFileSync(`${file}.gz`, await zopfli.gzipAsync(text, { numiterations: 5 })); // 4 % smaller than zlib makes them
   writeFileSync(`${file}.br`, brotliCompressSync(text, {
     params: { [constants.BROTLI_PARAM_SIZE_HINT]: text.length },
   }));

@@ -288,7 +288,7 @@ test("a user's robot is chosen in the page, and stays when the controller change
     const pick = p.get("robot");
     assert.equal(await pick.inputValue(), "silvermate");
     assert.deepEqual(await pick.locator("option").evaluateAll((all) => all.map((o) => o.value)),
-      ["jackal", "masuda", "robhaz", "robhaz_tall", "silvermate", "carrier"]);
+      ["jackal", "masuda", "robhaz", "robhaz_tall", "silvermate", "silvermate_arm", "carrier"]);
     await p.page.getByText("broken.json: limits: is missing").waitFor();
     await pick.selectOption("carrier");
     await until("the carrier drives", 20, session, (s) => s.robot.name === "carrier" && s.scenario.name === "case3");
