@@ -62,7 +62,7 @@ verb_fmt() {
 # Long drives and heavy loads, whose code shorter tests run as well. A sanitizer would make minutes of each.
 long_tests=(AppTest.ABatchOfTenThousand\* ArmInverse.EveryBranch\* ArmStudy.\* BodyFollower.Passes\*
   BodyStrip.TheArmYields\* Compare.TheBlindOne\* Determinism.SeveralRobots\*
-  FleetRobot.{EachRobot,SoItDoes}\* GroundCourses.ARobotClimbs\* GroundDrive.RefusesSteps\* MapData.\*
+  CrowdCrossing.{TheSame,SomebodyWho}\* FleetRobot.{EachRobot,SoItDoes}\* GroundCourses.ARobotClimbs\* GroundDrive.RefusesSteps\* MapData.\*
   MasudaStudy.{BandsCanFail,DocumentsName,DownwardSlopes,HasTheLines,PrintedRules}\*
   FilterStudy.RepeatsExactly\* Operator.IsTheSame\* Physics/RecordedSwap.\* RunListLoadTest.\* RunQueueTest.WaitingWorlds\*
   SlopeStudy.TheGuardKeeps\* TightPlaces.\* Turnover.BeginsWhere\*)
