@@ -14,7 +14,7 @@
 namespace algo {
 
 /// The simulator's truth is no part of it: a declared piece that moves by itself is left to the
-/// scanners. Whatever stands in a scan plane where no declared piece does counts from the floor to
+/// scanners. A surface in a scan plane that is no declared piece counts from the floor to
 /// above all arms, and as deep as kDepth behind the surface that is seen.
 class KnownThings {
  public:

@@ -48,7 +48,7 @@ constexpr double kMostContradicted = 0.15;  // of the common points, in free spa
 
 constexpr std::size_t kQuorum = 3;   // submaps that agree
 constexpr std::size_t kMemory = 20;  // submaps whose loops wait
-constexpr double kLead = 0.8;        // by which the sum of fits exceeds any rival's
+constexpr double kLead = 0.8;        // of the sum of fits over that of any other set
 constexpr double kLoopDoubt = 4;
 
 }  // namespace

@@ -1,5 +1,5 @@
 // algo/pipeline/arm_guard.hpp: proves that a command brings no part of a robot with an arm into
-// itself or into what it knows, whoever drives.
+// itself or into a known thing, under every driver.
 #pragma once
 
 #include <span>
