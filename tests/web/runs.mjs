@@ -39,6 +39,32 @@ async function with_page(options, act) {
 const rows = (p) => p.page.locator(".run-table tbody tr").evaluateAll((all) => all.map((row) => row.dataset.testid));
 const shows = (p, what, expected) => until(what, 10, () => rows(p), (now) => JSON.stringify(now) === JSON.stringify(expected));
 
+test("a list in a new order has no next page before its first page has come", { timeout: 60_000 }, () =>
+  with_page({}, async (p) => {
+    const refused = [];
+    p.page.on("response", (r) => r.ok() || refused.push(r.url()));
+    let answer_sorted;
+    const sorted_waits = new Promise((go) => (answer_sorted = go));
+    await p.page.route("**/api/v1/runs?*", async (route) => {
+      const url = route.request().url();
+      if (url.includes("sort=time")) await sorted_waits;
+      await route.continue({ url: url.replace("limit=50", "limit=2") });
+    });
+    await p.get("page-on").click();
+    await until("the second page", 10, () => p.get("page-words").textContent(), (w) => w.startsWith("3"));
+    await p.get("page-back").click();
+    await until("the first page", 10, () => p.get("page-words").textContent(), (w) => w.startsWith("1"));
+    const asked = p.page.waitForRequest((r) => r.url().includes("sort=time"));
+    await p.get("sort-time").click();
+    await asked;
+    assert.ok(await p.get("page-on").isDisabled());
+    answer_sorted();
+    await until("the next page", 10, () => p.get("page-on").isEnabled(), (on) => on);
+    await p.get("page-on").click();
+    await until("the second page", 10, () => p.get("page-words").textContent(), (w) => w.startsWith("3"));
+    assert.deepEqual(refused, []);
+  }));
+
 test("the search asks the server, and the chips say what they find", { timeout: 60_000 }, () =>
   with_page({}, async (p) => {
     const chip = (name) => p.get(`chip-${name}`).textContent();

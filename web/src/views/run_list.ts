@@ -49,6 +49,7 @@ export interface RunList {
   at: number;           // lines before this page
   loading: boolean;
   error: string | null;
+  paged: boolean;       // there are more pages than this one
   older: (() => void) | null;
   newer: (() => void) | null;
   refresh: () => void;
@@ -59,6 +60,7 @@ export function use_run_list(connected: boolean): RunList {
   const [sent, set_sent] = useState(kFirstSearch); // the search without what is still being typed
   const [cursors, set_cursors] = useState<string[]>([]); // where this page and the earlier pages begin
   const [page, set_page] = useState<RunPage>({ items: [], next: null });
+  const [answered, set_answered] = useState(""); // the query whose answer the page is
   const [counts, set_counts] = useState<{ results: RunList["results"]; total: number | null }>({ results: null, total: null });
   const [starts, set_starts] = useState<number[]>([]); // lines before each of those pages
   const [loading, set_loading] = useState(true);
@@ -74,20 +76,22 @@ export function use_run_list(connected: boolean): RunList {
     return () => clearTimeout(timer);
   }, [search]);
 
+  const query = query_of(sent, kPageSize, cursors.at(-1));
   const refresh = useCallback(async () => {
     const mine = ++asked.current;
     try {
-      const answer = await rest.get<RunPage>(query_of(sent, kPageSize, cursors.at(-1)));
+      const answer = await rest.get<RunPage>(query);
       if (mine !== asked.current) return;
       set_error(null);
       set_page(answer);
+      set_answered(query);
       if (answer.results) set_counts({ results: answer.results, total: answer.total ?? null });
     } catch (e) {
       if (mine !== asked.current) return;
       set_error(sentence_of(e));
     }
     set_loading(false);
-  }, [sent, cursors]);
+  }, [query]);
 
   useEffect(() => {
     void refresh();
@@ -98,9 +102,11 @@ export function use_run_list(connected: boolean): RunList {
   }, [refresh, connected]);
 
   const at = starts.at(-1) ?? 0;
-  const { next } = page;
+  // The next page of an earlier answer does not follow this page.
+  const next = answered === query ? page.next : null;
   return {
     search, ...counts, items: page.items, at, loading, error,
+    paged: page.next !== null || cursors.length > 0,
     set_search: (part) => change((before) => ({ ...before, ...part })),
     older: next === null ? null : () => {
       set_cursors([...cursors, String(next)]);

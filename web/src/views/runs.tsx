@@ -100,8 +100,8 @@ function Nothing(props: { list: RunList }): JSX.Element {
 
 /** Which lines are shown, and the way to the others. */
 function Pager(props: { list: RunList }): JSX.Element | null {
-  const { at, items, total, older, newer } = props.list;
-  if (!older && !newer) return null;
+  const { at, items, total, paged, older, newer } = props.list;
+  if (!paged) return null;
   return (
     <nav class="pager" aria-label="Pages of the list">
       <button class="ghost" data-testid="page-back" disabled={!newer} onClick={() => newer?.()}>Back</button>
