@@ -22,8 +22,7 @@ void RunFlags::add_to(Command command) {
   command.add_option("--physics,--vehicle", physics, "bullet or kinematic");
   add_robot_option(command, robot);
   command.add_option("--seed", overrides.seed, "Seed of the sensor noise (default 1)");
-  command.add_option("--set", settings, "A parameter, such as k_r=0.3; repeatable")
-      .type_name("NAME=VALUE");
+  add_set_option(command, settings);
 }
 
 RunOverrides RunFlags::resolved(const RobotLibrary& robots) const {
@@ -36,6 +35,17 @@ RunOverrides RunFlags::resolved(const RobotLibrary& robots) const {
   } else if (!robot.empty()) {
     out.robot = robot;
   }
+  out.parameters = parameters_set(settings);
+  return out;
+}
+
+Option add_set_option(Command command, std::vector<std::string>& settings) {
+  return command.add_option("--set", settings, "A parameter, such as k_r=0.3; repeatable")
+      .type_name("NAME=VALUE");
+}
+
+nlohmann::json parameters_set(const std::vector<std::string>& settings) {
+  nlohmann::json parameters = nlohmann::json::object();
   for (const std::string& setting : settings) {
     const std::size_t equals = setting.find('=');
     if (equals == std::string::npos) {
@@ -47,9 +57,9 @@ RunOverrides RunFlags::resolved(const RobotLibrary& robots) const {
     if (text.empty() || *end != '\0') {
       throw DocumentError("--set " + setting, fmt::format("'{}' is not a number", text));
     }
-    out.parameters[setting.substr(0, equals)] = value;
+    parameters[setting.substr(0, equals)] = value;
   }
-  return out;
+  return parameters;
 }
 
 RobotLibrary own_robots() {

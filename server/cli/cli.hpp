@@ -50,6 +50,11 @@ RobotLibrary own_robots();
 /// --robot-model, for RobotLibrary::load_file_or_name().
 Option add_robot_option(Command command, std::string& robot);
 
+/// --set, for parameters_set().
+Option add_set_option(Command command, std::vector<std::string>& settings);
+/// Values by name. Throws DocumentError for a setting that is not NAME=VALUE.
+nlohmann::json parameters_set(const std::vector<std::string>& settings);
+
 /// Options that several commands share.
 struct RunFlags {
   RunOverrides overrides{};

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "algo/driving.hpp"
+#include "algo/strip/strip_law.hpp"
 #include "server/cli/cli.hpp"
 #include "server/cli/pool_options.hpp"
 #include "server/lab/barn/barn_run.hpp"
@@ -24,6 +26,7 @@ struct BarnCommand {
   std::string scanner = "flat";
   std::string robot{};
   std::vector<std::uint64_t> only{};
+  std::vector<std::string> settings{};
   bool as_json = false;
   std::string scenarios{};
   std::string rows{};
@@ -36,13 +39,21 @@ std::string_view name(experiment::Contact contact) {
   return kNames.at(static_cast<std::size_t>(contact));
 }
 
+/// The parameters that every figure of the benchmark depends on.
+constexpr std::array kNamed{&algo::kContractionGain, &algo::kSafetyDistance, &algo::kMaxSpeed};
+
+json json_of(const barn::Rates& rates) {
+  return {{"runs", rates.runs},
+          {"success", rates.success},
+          {"collisions", rates.collisions},
+          {"timeouts", rates.timeouts}};
+}
+
 json result_json(const barn::Result& result) {
   const barn::Summary sum = summarise(result);
   json out = {{"worlds", sum.worlds},
-              {"runs", sum.runs},
-              {"success", sum.success},
-              {"collisions", sum.collisions},
-              {"timeouts", sum.timeouts},
+              {"parameters", json::object()},
+              {"by_difficulty", json::object()},
               {"score", sum.score},
               {"score_quarter", sum.score_quarter},
               {"mean_time_s", sum.mean_time},
@@ -52,6 +63,13 @@ json result_json(const barn::Result& result) {
               {"contacts_unavoidable", sum.unavoidable},
               {"contacts_after_jump", sum.jumped},
               {"outcomes", json::array()}};
+  out.update(json_of(sum.rates));
+  for (const algo::ParameterInfo* parameter : kNamed) {
+    out["parameters"][parameter->key()] = result.parameters[*parameter];
+  }
+  for (const barn::Bin& bin : by_difficulty(result)) {
+    out["by_difficulty"][bin.difficulty] = json_of(bin.rates);
+  }
   for (const barn::Run& run : result.runs) {
     out["outcomes"].push_back(
         {{"world", run.world},
@@ -71,10 +89,22 @@ void print_table(const barn::Result& result) {
   fmt::print("{}", to_text(runs_table(result)));
   const barn::Summary sum = summarise(result);
   fmt::print("\nPublic BARN worlds, our simulator, the official score formula: no rank.\n");
-  fmt::print("worlds {}, runs {}\n", sum.worlds, sum.runs);
-  fmt::print("success    {:7.2f} %\n", 100 * sum.success);
-  fmt::print("collisions {:7.2f} %\n", 100 * sum.collisions);
-  fmt::print("timeouts   {:7.2f} %\n", 100 * sum.timeouts);
+  for (const algo::ParameterInfo* parameter : kNamed) {
+    fmt::print("{} {}\n",
+               parameter->label,
+               algo::with_unit(result.parameters[*parameter], parameter->unit));
+  }
+  fmt::print("worlds {}, runs {}\n", sum.worlds, sum.rates.runs);
+  fmt::print("success    {:7.2f} %\n", 100 * sum.rates.success);
+  fmt::print("collisions {:7.2f} %\n", 100 * sum.rates.collisions);
+  fmt::print("timeouts   {:7.2f} %\n", 100 * sum.rates.timeouts);
+  for (const barn::Bin& bin : by_difficulty(result)) {
+    fmt::print("  {:9}{:6.2f} % success, {:.2f} % collisions, {} runs\n",
+               bin.difficulty,
+               100 * bin.rates.success,
+               100 * bin.rates.collisions,
+               bin.rates.runs);
+  }
   fmt::print("score      {:7.4f} of 0.5\n", sum.score);
   fmt::print("           {:7.4f} of 0.25, the formula of 2022 and 2023\n", sum.score_quarter);
   if (sum.avoidable + sum.unavoidable + sum.jumped > 0) {
@@ -112,6 +142,7 @@ int execute(BarnCommand command) {
   }
   command.options.conditions.controller = command.controllers.chosen().value_or("");
   command.options.conditions.controllers = command.controllers.catalogue();
+  command.options.conditions.parameters = parameters_set(command.settings);
   command.options.conditions.physics = physics_named(command.physics, "--physics");
   if (!command.robot.empty()) {
     command.options.conditions.robot = own_robots().load_file_or_name(command.robot);
@@ -167,6 +198,7 @@ void add_barn_command(Command app, int& status) {
       .excludes(robot);
   barn.add_option("--repeats", command->options.repeats, "Seeds per world (default 1)")
       .range(1, 10'000);
+  add_set_option(barn, command->settings);
   add_first_seed_option(barn, command->options.first_seed);
   barn.add_option("--phase",
                   command->options.conditions.phase,

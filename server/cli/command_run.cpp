@@ -140,10 +140,7 @@ void add_replay_command(Command app, int& status) {
   command.add_option("LOG", options->scenario, "A CARMEN log file").required().existing_file();
   command.add_option(
       "--filter", options->flags.overrides.filter, "pseudomedian (default), median, lulu or none");
-  command
-      .add_option(
-          "--set", options->flags.settings, "A parameter, such as filter_half_width=2; repeatable")
-      .type_name("NAME=VALUE");
+  add_set_option(command, options->flags.settings);
   command.add_option("--out", options->out, "Store the run in this database").type_name("DB");
   command
       .add_option("--pace",

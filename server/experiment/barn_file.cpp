@@ -70,6 +70,7 @@ World world_from_json(const JsonReader& in) {
   world.goal = {goal[0], goal[1]};
   world.goal_radius = in.number_or("goal_radius", 1, {0.01, 100});
   world.optimal_length = in.number("optimal_path_length", {0.01, 1e5});
+  world.difficulty = in.text_or("difficulty", "");
   const double radius = in.number_or("radius", 0.075, {0.001, 10});
   in.each("obstacles", kMaxObstacles, [&](const json& value, const std::string& at) {
     if (value.is_object()) {

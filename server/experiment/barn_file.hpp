@@ -22,6 +22,7 @@ struct World {
   algo::Vec2 goal{0, 0};
   double goal_radius = 1;     // [m]
   double optimal_length = 0;  // [m] of the published path; used only for the score
+  std::string difficulty{};   // such as "easy"; empty: the file does not say
   std::vector<algo::Obstacle> obstacles{};
 };
 
@@ -37,7 +38,9 @@ struct Conditions {
   /// Replaces the benchmark's Jackal; brings its own scanners and limits.
   std::optional<sim::RobotModel> robot{};
   std::string controller{};  // empty: `strip`, or `strip_moving` if obstacles move
-  double phase = 0;          // [s] into the obstacles' paths at the start of a run
+  /// In place of the benchmark's, as in RunOverrides.
+  nlohmann::json parameters = nlohmann::json::object();
+  double phase = 0;  // [s] into the obstacles' paths at the start of a run
   std::shared_ptr<const algo::ControllerCatalogue> controllers{};  // as in RunSpec
 };
 

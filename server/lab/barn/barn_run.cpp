@@ -18,6 +18,20 @@ double quantile(std::vector<float> values, double share) {
   return static_cast<double>(values[static_cast<std::size_t>(at)]);
 }
 
+Rates rates_of(const std::vector<Run>& runs, const std::string* difficulty) {
+  Rates rates;
+  for (const Run& run : runs) {
+    if (difficulty != nullptr && run.difficulty != *difficulty) continue;
+    ++rates.runs;
+    rates.success += run.row.outcome == Outcome::Reached ? 1 : 0;
+    rates.collisions += run.row.outcome == Outcome::Collided ? 1 : 0;
+    rates.timeouts += run.row.outcome == Outcome::OutOfTime ? 1 : 0;
+  }
+  const auto count = static_cast<double>(std::max<std::size_t>(1, rates.runs));
+  for (double* share : {&rates.success, &rates.collisions, &rates.timeouts}) *share /= count;
+  return rates;
+}
+
 }  // namespace
 
 Contact Run::contact() const {
@@ -25,17 +39,18 @@ Contact Run::contact() const {
 }
 
 experiment::Trial trial_of(const World& world, const Conditions& conditions, std::uint64_t seed) {
-  experiment::Trial trial{
-      .name = fmt::format("world {}, seed {}", world.id, seed),
-      .spec = make_spec(scenario_of(world, conditions), {.controllers = conditions.controllers}),
-      .judges = {{.name = "metrics"},
-                 {.name = "barn_score",
-                  .settings = {{"goal_radius", world.goal_radius},
-                               {"optimal_length", world.optimal_length}}},
-                 {.name = "contact"},
-                 {.name = "place"}},
-      .until = "barn_score",
-      .time_ticks = true};
+  experiment::Trial trial{.name = fmt::format("world {}, seed {}", world.id, seed),
+                          .spec = make_spec(scenario_of(world, conditions),
+                                            {.parameters = conditions.parameters,
+                                             .controllers = conditions.controllers}),
+                          .judges = {{.name = "metrics"},
+                                     {.name = "barn_score",
+                                      .settings = {{"goal_radius", world.goal_radius},
+                                                   {"optimal_length", world.optimal_length}}},
+                                     {.name = "contact"},
+                                     {.name = "place"}},
+                          .until = "barn_score",
+                          .time_ticks = true};
   trial.spec.seed = seed;
   return trial;
 }
@@ -48,38 +63,43 @@ Result run_worlds(const std::vector<World>& worlds, const Options& options) {
       [&](std::size_t i) { return trial_of(world_of(i), options.conditions, seed_of(i)); },
       options.pool);
   Result result{.worlds = worlds.size()};
+  if (!worlds.empty())
+    result.parameters = trial_of(worlds.front(), options.conditions, 1).spec.parameters;
   for (experiment::Row& row : rows) {
     const std::size_t i = options.pool.shard.job(result.runs.size());
-    result.runs.push_back({world_of(i).id, seed_of(i), std::move(row)});
+    result.runs.push_back({world_of(i).id, seed_of(i), world_of(i).difficulty, std::move(row)});
   }
   return result;
 }
 
+std::vector<Bin> by_difficulty(const Result& result) {
+  std::vector<Bin> bins;
+  for (const Run& run : result.runs) {
+    if (run.difficulty.empty()) continue;
+    const bool known =
+        std::ranges::any_of(bins, [&](const Bin& bin) { return bin.difficulty == run.difficulty; });
+    if (!known) bins.push_back({run.difficulty, rates_of(result.runs, &run.difficulty)});
+  }
+  return bins;
+}
+
 Summary summarise(const Result& result) {
-  Summary sum;
-  sum.worlds = result.worlds;
-  sum.runs = result.runs.size();
+  Summary sum{.worlds = result.worlds, .rates = rates_of(result.runs, nullptr)};
   double times = 0;
   std::vector<float> tick_us;
   for (const Run& run : result.runs) {
-    const bool success = run.row.outcome == Outcome::Reached;
-    sum.success += success ? 1 : 0;
-    sum.collisions += run.row.outcome == Outcome::Collided ? 1 : 0;
-    sum.timeouts += run.row.outcome == Outcome::OutOfTime ? 1 : 0;
     sum.avoidable += run.contact() == Contact::Avoidable ? 1U : 0U;
     sum.unavoidable += run.contact() == Contact::Unavoidable ? 1U : 0U;
     sum.jumped += run.contact() == Contact::Jumped ? 1U : 0U;
     sum.score += run.row["barn_score"];
     sum.score_quarter += run.row["barn_score_quarter"];
-    if (success) times += run.row["barn_time_s"];
+    if (run.row.outcome == Outcome::Reached) times += run.row["barn_time_s"];
     tick_us.insert(tick_us.end(), run.row.tick_us.begin(), run.row.tick_us.end());
   }
-  sum.mean_time = sum.success > 0 ? times / sum.success : 0;
-  const auto runs = static_cast<double>(std::max<std::size_t>(1, sum.runs));
-  for (double* mean :
-       {&sum.success, &sum.collisions, &sum.timeouts, &sum.score, &sum.score_quarter}) {
-    *mean /= runs;
-  }
+  const auto runs = static_cast<double>(std::max<std::size_t>(1, sum.rates.runs));
+  sum.mean_time = sum.rates.success > 0 ? times / (sum.rates.success * runs) : 0;
+  sum.score /= runs;
+  sum.score_quarter /= runs;
   sum.tick_us_p50 = quantile(tick_us, 0.5);
   sum.tick_us_p99 = quantile(tick_us, 0.99);
   return sum;

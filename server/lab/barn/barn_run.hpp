@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "server/experiment/barn_file.hpp"
@@ -16,6 +17,7 @@ namespace server::barn {
 struct Run {
   std::uint64_t world = 0;
   std::uint64_t seed = 0;
+  std::string difficulty{};  // of the world
   experiment::Row row{};
 
   /// The contact with a moving obstacle.
@@ -31,7 +33,8 @@ struct Options {
 
 struct Result {
   std::size_t worlds = 0;
-  std::vector<Run> runs{};  // the shard's runs, by world, then by seed
+  algo::Parameters parameters{};  // of the controller, in the first world
+  std::vector<Run> runs{};        // the shard's runs, by world, then by seed
 };
 
 experiment::Trial trial_of(const World& world, const Conditions& conditions, std::uint64_t seed);
@@ -39,15 +42,28 @@ experiment::Trial trial_of(const World& world, const Conditions& conditions, std
 /// Throws std::exception with a sentence if a world cannot be run.
 Result run_worlds(const std::vector<World>& worlds, const Options& options);
 
+/// Shares of the runs.
+struct Rates {
+  std::size_t runs = 0;
+  double success = 0, collisions = 0, timeouts = 0;
+};
+/// The worlds of one difficulty.
+struct Bin {
+  std::string difficulty{};
+  Rates rates{};
+};
+
 struct Summary {
-  std::size_t worlds = 0, runs = 0;
-  double success = 0, collisions = 0, timeouts = 0;        // shares of the runs
+  std::size_t worlds = 0;
+  Rates rates{};
   double score = 0, score_quarter = 0;                     // means over all runs
   double mean_time = 0;                                    // [s] of the runs that succeeded
   double tick_us_p50 = 0, tick_us_p99 = 0;                 // [us] CPU time of a control tick
   std::size_t avoidable = 0, unavoidable = 0, jumped = 0;  // contacts
 };
 Summary summarise(const Result& result);
+/// In the order of the file; empty if it says nothing of difficulty.
+std::vector<Bin> by_difficulty(const Result& result);
 
 /// One row per run: outcome, time, score, clearance, path.
 experiment::Table runs_table(const Result& result);

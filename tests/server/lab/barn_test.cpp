@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "algo/driving.hpp"
+#include "algo/strip/strip_law.hpp"
 #include "server/lab/barn/barn_run.hpp"
 #include "server/run/json_reader.hpp"
 #include "server/run/scenario_json.hpp"
@@ -114,10 +116,45 @@ TEST(BarnRun, ScoresByTheOfficialFormula) {
     EXPECT_NEAR(run.row["path_m"], 5, 0.3);  // to 1 m before the goal
   }
   const Summary sum = summarise(result);
-  EXPECT_EQ(sum.success, 1);
+  EXPECT_EQ(sum.rates.success, 1);
   EXPECT_EQ(sum.worlds, 1U);
-  EXPECT_EQ(sum.runs, 2U);
+  EXPECT_EQ(sum.rates.runs, 2U);
   EXPECT_GT(sum.tick_us_p99, 0);
+}
+
+TEST(BarnRun, NamesItsParametersAndTakesOthers) {
+  Options options;
+  options.conditions.physics = sim::PhysicsKind::Kinematic;
+  const auto worlds = worlds_from_json(lane());
+  const Result as_benchmarked = run_worlds(worlds, options);
+  EXPECT_EQ(as_benchmarked.parameters[algo::kContractionGain], 0.4);
+  EXPECT_EQ(as_benchmarked.parameters[algo::kSafetyDistance], 0.75);
+  options.conditions.parameters = {{"v_max", 0.5}, {"k_c", 0.8}};
+  const Result slower = run_worlds(worlds, options);
+  EXPECT_EQ(slower.parameters[algo::kContractionGain], 0.8);
+  EXPECT_GT(slower.runs[0].row["barn_time_s"], 2 * as_benchmarked.runs[0].row["barn_time_s"]);
+  options.conditions.parameters = {{"no_such", 1}};
+  EXPECT_THROW(run_worlds(worlds, options), DocumentError);
+}
+
+TEST(BarnRun, CountsTheRunsOfEachDifficulty) {
+  Result result;
+  EXPECT_TRUE(by_difficulty(result).empty());
+  const auto ran = [&](const char* difficulty, Outcome outcome) {
+    result.runs.push_back({.difficulty = difficulty, .row = {.outcome = outcome}});
+  };
+  ran("easy", Outcome::Reached);
+  ran("hard", Outcome::Collided);
+  ran("easy", Outcome::OutOfTime);
+  ran("", Outcome::Reached);
+  const std::vector<Bin> bins = by_difficulty(result);
+  ASSERT_EQ(bins.size(), 2U);
+  EXPECT_EQ(bins[0].difficulty, "easy");
+  EXPECT_EQ(bins[0].rates.runs, 2U);
+  EXPECT_EQ(bins[0].rates.success, 0.5);
+  EXPECT_EQ(bins[0].rates.timeouts, 0.5);
+  EXPECT_EQ(bins[1].difficulty, "hard");
+  EXPECT_EQ(bins[1].rates.collisions, 1);
 }
 
 /// Summing 600 times 1/600 once gave a rate above 1.
@@ -131,7 +168,7 @@ TEST(BarnRun, RatesAreFractionsOfOne) {
                            {"barn_score", 0.5},
                            {"barn_score_quarter", 0.25}}};
   }
-  EXPECT_EQ(summarise(result).success, 1);
+  EXPECT_EQ(summarise(result).rates.success, 1);
 }
 
 TEST(BarnRun, ACollisionScoresNothing) {
@@ -143,7 +180,7 @@ TEST(BarnRun, ACollisionScoresNothing) {
   const Result result = run_worlds(worlds_from_json(document), options);
   EXPECT_EQ(result.runs[0].row.outcome, Outcome::Collided);
   EXPECT_EQ(result.runs[0].row["barn_score"], 0);
-  EXPECT_EQ(summarise(result).collisions, 1);
+  EXPECT_EQ(summarise(result).rates.collisions, 1);
 }
 
 TEST(BarnRun, TheSameSeedGivesTheSameRunWhateverTheWorkers) {
