@@ -45,7 +45,9 @@ export function SceneThree(props: { insets: () => Insets; chase?: boolean; on_ab
     const started = async () => {
       const { World3 } = await import("./world");
       if (gone || !box.current) return;
-      world.current = new World3(box.current, read_palette(), () => app.shown, () => ({ ...app.ui.value, chase: latest.current.chase }));
+      world.current = new World3(box.current, read_palette(), () => app.shown, () => ({
+          ...app.ui.value, chase: latest.current.chase, desk: app.ui.value.view === "drive" && app.scene.arm ? app.desk : null,
+        }));
       app.redraw = () => world.current?.request();
       app.fit_three = () => world.current?.fit();
     };
