@@ -117,12 +117,14 @@ export function begin_drag(handle: Handle, goal: HandGoalJson, start: Ray): (ray
     const now = grip(handle, at, ray);
     if (!first || !now) return last;
     const by = now[0] - first[0];
-    if (handle.name === "level") last = moved(goal, [by, now[1] - first[1], 0]);
-    else if (is_axis(handle)) last = moved(goal, scaled(handle.axis, by));
+    if (handle.name === "level") last = moved(goal, [whole_cm(by), whole_cm(now[1] - first[1]), 0]);
+    else if (is_axis(handle)) last = moved(goal, scaled(handle.axis, whole_cm(by)));
     else last = turned(goal, handle.axis, whole_degrees(wrap_angle(by)));
     return last;
   };
 }
 
+/** Hands are exact to a centimetre and a degree at best. */
 const kDegree = Math.PI / 180;
+const whole_cm = (v: number) => Math.round(v * 100) / 100;
 const whole_degrees = (angle: number) => Math.round(angle / kDegree) * kDegree;

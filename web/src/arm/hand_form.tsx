@@ -31,7 +31,7 @@ export function HandForm(props: { desk: ArmDesk }): JSX.Element | null {
       <h2>Hand <small>{draft ? "not sent yet" : asked ? "its goal" : "where it is"}</small></h2>
       <form class="arm-form" noValidate data-testid="hand-values" onSubmit={(e) => {
         e.preventDefault();
-        void desk.send(goal);
+        void desk.send(desk.goal ?? goal);
       }}>
         {(["x", "y", "z"] as const).map((name) => (
           <NumberField key={name} label={name} unit="m" name={`hand-${name}`} value={goal[name]} step={0.05}
@@ -77,10 +77,10 @@ function ArmAngle(props: { desk: ArmDesk; goal: HandGoalJson }): JSX.Element | n
   );
 }
 
-/** Why the hand does not get to the goal, before anybody sends it there. */
+/** Why the hand does not get to a goal that is not sent yet; of a sent one the robot tells. */
 function Reach(props: { desk: ArmDesk; goal: HandGoalJson }): JSX.Element | null {
   const { desk, goal } = props;
-  const far = desk.draft || hand_goal_of(use_app().scene) ? desk.reach(goal) : null;
+  const far = desk.draft && desk.reach(goal);
   if (!far) return null;
   if (!far.never && !goal.base_stays) return <p class="quiet" data-testid="hand-reach">The base has to come nearer first. {far.words}</p>;
   return (

@@ -9,11 +9,11 @@ export interface PlannedPlace { base: Pose; joints: Float32Array; arm: ArmPlace 
 const kNumbers = 10; // of a pose: x, y, heading and seven joints
 const found = new WeakMap<Float32Array, PlannedPlace[]>();
 
-/** The places of the plan, the first one where it began. Found once for a plan. */
+/** The places of the plan, the first one where it began; none once the robot is there. Found once for a plan. */
 export function planned(scene: SceneState): PlannedPlace[] {
-  const { arm, arm_plan } = scene;
+  const { arm, arm_plan, frame } = scene;
   const ghost = arm_plan?.ghost;
-  if (!arm || !ghost) return [];
+  if (!arm || !ghost || frame?.arm?.state === "arrived") return [];
   const known = found.get(ghost);
   if (known) return known;
   const all = places_in(arm, ghost);

@@ -28,7 +28,13 @@ export function Range(props: {
       <span class="arm-number">
         {props.words && held === null && <em>{props.words}</em>}
         <input class="num" type="number" min={min} max={max} step={step} value={Math.round(value)} aria-label={`${props.label} in degrees`}
-          data-testid={`${name}-number`} onChange={(e) => {
+          data-testid={`${name}-number`} onKeyDown={(e) => {
+            if (e.key !== "Enter") return;
+            e.preventDefault(); // the angle alone is sent, not the form about it
+            const field = e.currentTarget;
+            field.blur(); // commits what is typed
+            field.focus();
+          }} onChange={(e) => {
             const typed = Number(e.currentTarget.value);
             if (e.currentTarget.value !== "" && Number.isFinite(typed)) set(typed);
           }} />°

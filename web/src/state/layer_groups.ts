@@ -15,7 +15,7 @@ type Group = (typeof kGroups)[number];
 function group_of(key: LayerKey): Group {
   if (is_sensed(key.name)) return "Senses";
   if (key.scaled) return "Forces";
-  return key.token === "warn" || key.kind === "grid" || key.kind === "polar" ? "World" : "Ways";
+  return key.name === "arm.near" || key.token === "warn" || key.kind === "grid" || key.kind === "polar" ? "World" : "Ways";
 }
 
 /**

@@ -233,6 +233,8 @@ export function scene_bounds(scene: SceneState): Bounds {
   const pose = robot_pose(scene);
   if (scene.start && scene.world) include(b, scene.start.x, scene.start.y, scene.radius + 0.25);
   if (scene.goal) include(b, scene.goal.x, scene.goal.y, 0.7);
+  const hand = scene.frame?.arm?.hand_goal;
+  if (hand) include(b, hand.x, hand.y, 0.3);
   for (const goal of scene.goals_ahead) include(b, goal.x, goal.y, 0.7);
   for (const o of scene.obstacles) include_obstacle(b, o);
   const empty = !scene.world || scene.obstacles.length === 0;

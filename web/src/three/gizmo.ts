@@ -11,7 +11,7 @@ import { label } from "./layers";
 import { clear, flat, tube } from "./shapes";
 
 const kSize = 105;  // [px] of an axis
-const kLeast = 0.2; // of the smaller side of the view, at most
+const kShare = 0.23; // of the smaller side of the view, at most
 const kThick = 3;   // [px] of a line
 const kSlack = { mouse: 12, touch: 26 }; // [px] about a handle
 const kRoundness = 8; // corners of a line's section
@@ -68,7 +68,7 @@ export class Gizmo {
     }
     const pixel = this.pixel_at(place_of(goal));
     const { clientWidth: w, clientHeight: h } = this.canvas_;
-    this.size_ = Math.min(kSize, kLeast * 2 * Math.min(w, h)) * pixel;
+    this.size_ = Math.min(kSize, kShare * Math.min(w, h)) * pixel;
     const handles = handles_of(goal, this.size_);
     for (const handle of handles) this.add(handle, pixel, p);
     this.tell(handles);

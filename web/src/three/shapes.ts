@@ -197,7 +197,7 @@ export function push_arrow(group: THREE.Group, at: Point, v: Point & { z?: numbe
   const up = v.z ?? 0;
   const length = Math.hypot(v.x, v.y, up) * times;
   if (length < 0.03) return;
-  const head = Math.min(0.12, length * 0.5);
+  const head = Math.min(up === 0 ? 0.12 : 0.06, length * 0.5);
   const arrow = new THREE.ArrowHelper(new THREE.Vector3(v.x, v.y, up).normalize(),
     new THREE.Vector3(at.x, at.y, z), length, colour, head, head * 0.7);
   group.add(arrow);

@@ -3,6 +3,7 @@ import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { HandGoalJson, SessionState } from "../contract";
 import type { Link } from "../arm/chain";
+import type { HandleName } from "../arm/gizmo";
 import { Palette } from "../draw/palette";
 import { Selection, kDrift } from "../draw/scene";
 import { Eye } from "../edit/inspect";
@@ -35,6 +36,7 @@ interface Options {
 // The camera that rides behind the robot [m], R: its eye, and the point ahead that it looks at.
 const kChaseEye = [-2.4, 0, 1.9] as const, kChaseTarget = [1.3, 0, 0] as const;
 
+const kArmHeight = 0.5; // [m] that the middle of the view has with an arm
 const kMostPath = 1500;
 const kLate = 80;       // [ms] from asking for a picture to drawing it
 const kMostLate = 4;    // late ones in a row
@@ -104,6 +106,11 @@ export class World3 {
     this.planned_ = [];
     clear(this.robot_);
     this.request();
+  }
+
+  /** The handle of the gizmo that a pointer is on. */
+  get handle(): HandleName | null {
+    return this.gizmo_.name;
   }
 
   /** How a pointer at `px` of the view sees the scene. */
@@ -203,11 +210,11 @@ export class World3 {
       return;
     }
     const b = scene_bounds(scene);
-    const middle = new THREE.Vector3((b.min_x + b.max_x) / 2, (b.min_y + b.max_y) / 2, 0);
+    const middle = new THREE.Vector3((b.min_x + b.max_x) / 2, (b.min_y + b.max_y) / 2, scene.arm ? kArmHeight : 0);
     // On a phone held upright the view is narrower than high.
     const span = Math.max(3, b.max_x - b.min_x, b.max_y - b.min_y) / Math.min(1, this.camera_.aspect);
     this.controls_.target.copy(middle);
-    this.camera_.position.set(middle.x - 0.3 * span, middle.y - 0.85 * span, 0.85 * span);
+    this.camera_.position.set(middle.x - 0.3 * span, middle.y - 0.85 * span, middle.z + 0.85 * span);
   }
 
   /** Builds grid, obstacles and goal again only when one of them has changed. */
@@ -270,7 +277,7 @@ export class World3 {
     for (const o of build_arm(scene, this.palette_)) this.arm_.add(o);
     placed_by(this.arm_, this.stand_);
     for (const o of build_hand_goal(scene, this.palette_, desk?.draft ?? null)) this.moving_.add(o);
-    if (!changed(this.planned_, [scene.arm_plan?.ghost, hidden])) return;
+    if (!changed(this.planned_, [scene.arm_plan?.ghost, scene.frame?.arm?.state === "arrived", hidden])) return;
     clear(this.plan_);
     for (const o of build_plan(scene, this.palette_, hidden)) this.plan_.add(o);
   }
