@@ -38,7 +38,7 @@ function GizmoWords(props: { handle: () => HandleName | null }): JSX.Element | n
   const goal = ui.value.view === "drive" && desk?.chosen ? desk.goal : null;
   const handle = props.handle();
   return goal && (
-    <p class="gizmo-words card" data-testid="gizmo-words">{handle ? kHandles[handle](goal) : "Drag an axis to move the hand's goal, a ring to turn it"}</p>
+    <p class={`gizmo-words card ${handle ? "" : "idle"}`} data-testid="gizmo-words">{handle ? kHandles[handle](goal) : "Drag an axis to move the hand's goal, a ring to turn it"}</p>
   );
 }
 
