@@ -37,8 +37,9 @@ const arrived = (what) => until(what, 90, session, (s) => s.arm === "arrived");
 
 async function fresh(options = {}, scenario = kWorld) {
   await control({ action: "load", scenario });
-  await control({ action: "play" });
+  await control({ action: "pause" });
   const p = await open(browser, server.base, options);
+  await control({ action: "play" });
   if ((await p.get("layers").getAttribute("aria-expanded")) === "true") await p.get("layers").click();
   return p;
 }

@@ -14,6 +14,7 @@ export function Range(props: {
 }): JSX.Element {
   const { name, min, max, step, reset } = props;
   const [held, set_held] = useState<number | null>(null);
+  const [typed, set_typed] = useState<string | null>(null); // stands while the arm moves
   const value = held ?? props.aim ?? props.value;
   const share = ((value - min) / (max - min)) * 100;
   const say = `${fixed(value, 0)}°`;
@@ -21,23 +22,24 @@ export function Range(props: {
     set_held(null);
     props.on_set(Math.max(min, Math.min(max, v)));
   };
+  const commit = () => {
+    const angle = Number(typed);
+    set_typed(null);
+    if (typed !== null && typed !== "" && Number.isFinite(angle)) set(angle);
+  };
   return (
     <div class="gain arm-range">
       <label for={name}><Named label={props.label} meaning={props.help} /></label>
       {reset && <button type="button" class="mini" aria-label={reset.label} title={reset.label} onClick={reset.act}>{icons.reset}</button>}
       <span class="arm-number">
         {props.words && held === null && <em>{props.words}</em>}
-        <input class="num" type="number" min={min} max={max} step={step} value={Math.round(value)} aria-label={`${props.label} in degrees`}
-          data-testid={`${name}-number`} onKeyDown={(e) => {
+        <input class="num" type="number" min={min} max={max} step={step} value={typed ?? Math.round(value)}
+          aria-label={`${props.label} in degrees`} data-testid={`${name}-number`} onInput={(e) => set_typed(e.currentTarget.value)}
+          onKeyDown={(e) => {
             if (e.key !== "Enter") return;
             e.preventDefault(); // the angle alone is sent, not the form about it
-            const field = e.currentTarget;
-            field.blur(); // commits what is typed
-            field.focus();
-          }} onChange={(e) => {
-            const typed = Number(e.currentTarget.value);
-            if (e.currentTarget.value !== "" && Number.isFinite(typed)) set(typed);
-          }} />°
+            commit();
+          }} onBlur={commit} />°
       </span>
       <span class="bound num" aria-hidden="true">{fixed(min, 0)}</span>
       <input id={name} data-testid={name} type="range" min={min} max={max} step={step} value={value} aria-valuetext={say}
