@@ -34,7 +34,8 @@ constexpr LayerInfo kNearLayer{.name = "arm.near",
                                .label = "Nearest things of the links",
                                .kind = LayerKind::Arrows,
                                .tone = Tone::External,
-                               .axes = 3};
+                               .axes = 3,
+                               .unit = "m"};
 
 Pose3 pose_of(const SetHandGoal& goal) {
   const Quaternion& a = goal.attitude_W;

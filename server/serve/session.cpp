@@ -26,7 +26,9 @@ bool is_goal(const algo::Request& request) {
   return std::holds_alternative<algo::SetGoal>(request) ||
          std::holds_alternative<algo::AddGoal>(request) ||
          std::holds_alternative<algo::SetGoals>(request) ||
-         std::holds_alternative<algo::ClearGoal>(request);
+         std::holds_alternative<algo::ClearGoal>(request) ||
+         std::holds_alternative<algo::SetHandGoal>(request) ||
+         std::holds_alternative<algo::Carry>(request);
 }
 
 bool has_goal(const algo::Intent& asked) {
@@ -85,7 +87,7 @@ void Session::begin(PreparedRun next) {
   if (spec.scenario.loop) first = {route_of(spec.scenario)};
   if (stopped) first.emplace_back(algo::Stop{true});
   for (const algo::Request& request : first) state_.asked.apply(request);
-  state_.route = {state_.asked.route(), 0, state_.asked.loop};
+  note_goals();
   state_.spec = spec;
   if (saved_.name != spec.scenario.name) saved_ = spec.scenario;
   note_edits();
@@ -350,7 +352,7 @@ void Session::drain_replies() {
 void Session::adopt(const algo::Request& request) {
   const bool had_goal = has_goal(state_.asked);
   state_.asked.apply(request);
-  if (is_goal(request)) state_.route = {state_.asked.route(), 0, state_.asked.loop};
+  if (is_goal(request)) note_goals();
   if (is_goal(request) || algo::is_edit(request)) note_edits();
   const bool stick = std::holds_alternative<algo::Joystick>(request);
   if (stick && had_goal && !state_.asked.goal && !state_.asked.hand_goal)

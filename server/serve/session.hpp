@@ -39,8 +39,10 @@ struct SessionState {
   algo::RobotSpec robot{};
   bool editable = false;  // obstacles can be added, moved and removed
   Pace pace{};
-  algo::Intent asked{};                  // the sum of all accepted requests
-  algo::SetGoals route{};                // the goals as last set; driving by hand does not clear it
+  algo::Intent asked{};    // the sum of all accepted requests
+  algo::SetGoals route{};  // the goals as last set; driving by hand does not clear it
+  std::optional<algo::SetHandGoal> hand_goal{};  // of an arm, in the same way
+  std::optional<algo::SetGoal> carry_goal{};
   bool edited = false;                   // the world differs from the scenario as loaded or saved
   std::vector<algo::Obstacle> others{};  // the scenario's other robots, at their starts
   algo::Outcome outcome = algo::Outcome::Running;
@@ -174,6 +176,7 @@ class Session {
 
   void engage_stop(std::uint64_t ticket, const Answer& answer);
   void adopt(const algo::Request& request);
+  void note_goals();
   void note_edits();
   std::uint32_t free_obstacle_id();
   void drain_replies();

@@ -15,6 +15,9 @@ sim::Scenario Session::as_scenario() const {
     out.goal = out.waypoints.back();
     out.waypoints.pop_back();
   }
+  out.hand_goal = state_.hand_goal;
+  out.carry = state_.carry_goal.has_value();
+  if (out.carry) out.goal = state_.carry_goal;
   out.obstacles = state_.asked.obstacles;
   out.parameters = state_.asked.parameters;
   return out;
@@ -50,8 +53,18 @@ void Session::saved(const sim::Scenario& scenario) {
   changed();
 }
 
+void Session::note_goals() {
+  state_.route = {state_.asked.route(), 0, state_.asked.loop};
+  state_.hand_goal = state_.asked.hand_goal;
+  state_.carry_goal = state_.asked.carry_goal;
+}
+
 void Session::note_edits() {
-  state_.edited = state_.spec.scenario.start != saved_.start || state_.route != route_of(saved_) ||
+  const std::optional<algo::SetGoal> carried = saved_.carry ? saved_.goal : std::nullopt;
+  const algo::SetGoals route = saved_.carry ? algo::SetGoals{} : route_of(saved_);
+  const bool other_goals =
+      state_.route != route || state_.hand_goal != saved_.hand_goal || state_.carry_goal != carried;
+  state_.edited = state_.spec.scenario.start != saved_.start || other_goals ||
                   state_.asked.obstacles != saved_.obstacles;
 }
 

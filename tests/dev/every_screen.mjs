@@ -166,6 +166,27 @@ const kSteps = {
     await p.page.mouse.up();
     await shot("teleop-rest");
   },
+  async arm({ p, base, go, press, shot }) {
+    await post(base, "/session/control", { action: "load", scenario: "arm_table" });
+    await post(base, "/session/control", { action: "play" });
+    await go("drive");
+    await until("a plan that is followed", 60, () => session(base), (s) => s.arm === "goes" && s.pose.x > 0.3);
+    await post(base, "/session/control", { action: "pause" });
+    if (!(await p.get("tab-arm").last().isVisible())) await press("tune");
+    await p.get("tab-arm").last().click();
+    await p.get("hand-z").last().fill("2.4");
+    await shot("arm");
+    await p.page.keyboard.press("Escape");
+    if (await p.get("sheet").count()) await press("tune");
+    await press("three");
+    await p.get("scene-3d").waitFor({ timeout: 30_000 });
+    await press("tool-hand");
+    await p.page.waitForTimeout(2500);
+    await shot("arm-3d");
+    await press("tool-hand");
+    await press("three");
+    await p.get("scene").waitFor();
+  },
   async runs({ p, press, go, shot }) {
     await go("runs");
     await p.page.locator("a.run-link, tbody tr").first().waitFor();

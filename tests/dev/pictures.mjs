@@ -133,6 +133,18 @@ const kFeatures = {
     await shoot(p.page, "three", kMostFeature);
     await p.page.keyboard.press("3");
   },
+  async arm(p, base) {
+    await control(base, { action: "load", scenario: "arm_table" });
+    await control(base, { action: "play" });
+    await until("near the table", 120, () => session(base), (s) => s.arm === "goes" && s.pose.x > 1.1);
+    await control(base, { action: "pause" });
+    await p.page.keyboard.press("3");
+    await p.get("tool-hand").click();
+    await pause(3000);
+    await shoot(p.page, "arm", kMostFeature);
+    await p.page.keyboard.press("h");
+    await p.page.keyboard.press("3");
+  },
   async experiments(p, base) {
     const document = JSON.parse(readFileSync(join(repository, "docs/experiments/canonical.json"), "utf8"));
     const { id } = await post(base, "/experiments", document);

@@ -31,6 +31,48 @@ export interface FrameSpec {
   measures?: [string, string, number][];
   sonar?: [number, number][]; // heading of the mount, range
   moved?: [number, number, number, number][]; // id, x, y, heading
+  joints?: number[];
+  arm?: ArmSpec;
+}
+
+export interface ArmSpec {
+  state?: wire.ArmState;
+  clearance?: number[];
+  own?: number;
+  hand_goal?: { x: number; y: number; z: number; qw: number; qx: number; qy: number; qz: number; arm_angle?: number };
+  joint_goal?: number[];
+  plan?: number;
+  ghost?: number[];
+}
+
+function add_arm(b: flatbuffers.Builder, arm: ArmSpec): number {
+  const clearance = wire.Arm.createClearanceVector(b, arm.clearance ?? []);
+  const joint_goal = arm.joint_goal ? wire.Arm.createJointGoalVector(b, arm.joint_goal) : 0;
+  const ghost = arm.ghost ? wire.Arm.createGhostVector(b, arm.ghost) : 0;
+  let goal = 0;
+  if (arm.hand_goal) {
+    const g = arm.hand_goal;
+    wire.SetHandGoal.startSetHandGoal(b);
+    wire.SetHandGoal.addPosition(b, wire.Vec3.createVec3(b, g.x, g.y, g.z));
+    wire.SetHandGoal.addAttitude(b, wire.Quaternion.createQuaternion(b, g.qw, g.qx, g.qy, g.qz));
+    if (g.arm_angle !== undefined) wire.SetHandGoal.addArmAngle(b, g.arm_angle);
+    goal = wire.SetHandGoal.endSetHandGoal(b);
+  }
+  wire.Arm.startArm(b);
+  wire.Arm.addClearance(b, clearance);
+  wire.Arm.addOwnClearance(b, arm.own ?? 0);
+  wire.Arm.addState(b, arm.state ?? wire.ArmState.Rest);
+  if (goal) wire.Arm.addHandGoal(b, goal);
+  if (joint_goal) wire.Arm.addJointGoal(b, joint_goal);
+  wire.Arm.addPlan(b, arm.plan ?? 0);
+  if (ghost) wire.Arm.addGhost(b, ghost);
+  return wire.Arm.endArm(b);
+}
+
+function add_joints(b: flatbuffers.Builder, positions: number[]): number {
+  const at = wire.Joints.createPositionsVector(b, positions);
+  const rates = wire.Joints.createRatesVector(b, positions.map(() => 0));
+  return wire.Joints.createJoints(b, at, rates, null);
 }
 
 export interface LayerSpec {
@@ -211,7 +253,11 @@ export function frame_bytes(spec: FrameSpec): Uint8Array {
     wire.RangeReading.createRangeReading(b, 0, 0, heading, spec.tick * 0.026, range, 4, wire.BeamStatus.Ok);
   }
   const readings = b.endVector();
+  const joints = spec.joints ? add_joints(b, spec.joints) : 0;
+  const arm = spec.arm ? add_arm(b, spec.arm) : 0;
   wire.Frame.startFrame(b);
+  if (joints) wire.Frame.addJoints(b, joints);
+  if (arm) wire.Frame.addArm(b, arm);
   if (limit) wire.Frame.addLimit(b, limit);
   wire.Frame.addClock(b, wire.Clock.createClock(b, BigInt(spec.tick), spec.stamp ?? spec.tick * 0.026));
   const [x, y, heading] = spec.pose ?? [0, 0, 0];

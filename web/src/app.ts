@@ -2,6 +2,7 @@
 import { createContext } from "preact";
 import { useContext } from "preact/hooks";
 import { Catalog, Page, RequestJson, RobotItem, ScenarioItem, SessionState } from "./contract";
+import type { ArmDesk } from "./arm/desk";
 import { View } from "./draw/view";
 import { Editor } from "./edit/editor";
 import { Tool } from "./edit/gestures";
@@ -40,6 +41,8 @@ export class App {
   readonly entry: Entry;
   readonly editor: Editor;
   readonly people = new People();
+  /** For a robot with an arm, once its part of the page is there. */
+  desk: ArmDesk | null = null;
   /** Asks the canvas to draw again. */
   redraw: () => void = () => undefined;
   /** Fits the world into the 3D view, if that is shown. */
@@ -204,7 +207,8 @@ export class App {
     const drives = may && (session?.robot.drives ?? false);
     const editable = may && (session?.robot.editable ?? false);
     const looks = tool === "pan" || tool === "measure";
-    return looks || (tool === "goal" ? drives : editable) ? tool : "pan";
+    const can = tool === "goal" ? drives : tool === "hand" ? drives && !!session?.robot.arm : editable;
+    return looks || can ? tool : "pan";
   }
   show_three(three: boolean): void {
     store_three(three);
@@ -319,6 +323,7 @@ export class App {
   private take_session(session: SessionState): void {
     const before = this.ui.value.session;
     fold_session(this.scene, session);
+    if (session.robot.arm && !this.desk) void this.fetch_desk();
     const other_world = before?.scenario.name !== session.scenario.name;
     const other_run = before?.run?.id !== session.run?.id;
     if (other_world) {
@@ -338,6 +343,12 @@ export class App {
     if (other_tool || (other_run && session.source === "hardware")) this.ui.set({ tool: "pan", preview: null });
     const gone = this.ui.value.selection?.kind === "obstacle" && !this.selected_obstacle;
     this.ui.set({ session, ...(gone ? { selection: null } : {}) });
+    this.redraw();
+  }
+
+  private async fetch_desk(): Promise<void> {
+    const { ArmDesk } = await import("./arm/part");
+    this.desk ??= new ArmDesk(this);
     this.redraw();
   }
 

@@ -13,6 +13,31 @@ export interface ScenarioDocument {
   [key: string]: unknown;
 }
 
+/** A pose of an arm's hand in W [m], as a unit quaternion. `then`: where the base drives after that. */
+export interface HandGoalJson {
+  x: number; y: number; z: number;
+  qw: number; qx: number; qy: number; qz: number;
+  arm_angle?: number; // [rad] of the elbow about the line from shoulder to wrist; absent: any
+  base_stays?: boolean;
+  then?: GoalJson;
+}
+
+/** A robot's arm [m, rad]: seven joints in each list, the shoulder's first. */
+export interface ArmInfo {
+  shoulder: [number, number, number]; // in R
+  heading: number;                    // of the shoulder's frame
+  upper_arm: number;
+  elbow_offset: number;
+  forearm: number;
+  hand: number;
+  link_radius: number;
+  mast_radius: number;
+  base_height: number;
+  limits: number[]; // to either side
+  rates: number[];
+  rest: number[];   // folded
+}
+
 /** A sensor of the robot beside scanner, sonar, infrared and bumpers. */
 export interface ChannelInfo { name: string; kind: string; unit: string; values: number }
 
@@ -29,6 +54,7 @@ export interface RobotInfo {
   paceable: boolean;
   drives: boolean;
   channels?: ChannelInfo[];
+  arm?: ArmInfo;
 }
 
 export type Source = "simulation" | "replay" | "hardware";
@@ -94,6 +120,9 @@ export interface SessionState {
   goal: GoalJson | null;
   goals_ahead: GoalJson[];
   goals_behind: GoalJson[]; // reached
+  hand_goal?: HandGoalJson | null; // of robots with an arm, as the next two
+  carry_goal?: GoalJson | null;
+  joint_goal?: number[] | null;
   loop: boolean;            // after the last goal, go on to the first
   edited: boolean;          // the world differs from the scenario as loaded or saved
   obstacles: ObstacleJson[];
@@ -111,7 +140,14 @@ export interface SessionState {
   record: RecordInfo;
 }
 
+/** What an arm is asked for. */
+export type ArmRequest =
+  | ({ type: "set_hand_goal" } & HandGoalJson)
+  | { type: "set_joints"; position: number[] }
+  | ({ type: "carry" } & GoalJson);
+
 export type RequestJson =
+  | ArmRequest
   | { type: "set_goal"; x: number; y: number; heading?: number }
   | { type: "add_goal"; x: number; y: number; heading?: number }
   | { type: "set_goals"; goals: GoalJson[]; next?: number; loop?: boolean }

@@ -15,6 +15,7 @@ export interface Obstacle {
   width: number;     // [m] box, ground; a wall's thickness
   points: Point[];   // polygon, in its own frame
   height: number;    // [m]; of a ramp at x = length / 2; of a trench 0
+  bottom: number;    // [m] above the floor: there is room below it
   low: number;       // [m] top of the ground at x = -length / 2; below 0 in a trench
   path: PathJson | null; // of its reference point, if it moves by itself
   /** Optional fields of the JSON, as undo returns them; absent ones are undefined. */
@@ -39,6 +40,7 @@ export interface ObstacleJson {
   from?: [number, number];
   to?: [number, number];
   height?: number;
+  bottom?: number;
   low?: number;
   depth?: number;
   reflectivity?: number;
@@ -58,6 +60,7 @@ export function obstacle_from_json(json: ObstacleJson): Obstacle {
     points: [],
     height: json.type === "trench" ? 0 : height ?? 1,
     low: json.type === "trench" ? -(json.depth ?? 0) : json.type === "step" ? height ?? 0 : json.low ?? 0,
+    bottom: json.bottom ?? 0,
     path: json.path ?? null,
     extra: { reflectivity, specular, height },
   };
@@ -77,7 +80,7 @@ export function obstacle_from_json(json: ObstacleJson): Obstacle {
 
 /** The JSON that adds this obstacle again, without its id. */
 export function obstacle_to_json(o: Obstacle): ObstacleJson {
-  return { ...o.extra, ...shape_to_json(o), ...(o.path && { path: o.path }) };
+  return { ...o.extra, ...shape_to_json(o), ...(o.bottom > 0 && { bottom: o.bottom }), ...(o.path && { path: o.path }) };
 }
 
 function shape_to_json(o: Obstacle): ObstacleJson {

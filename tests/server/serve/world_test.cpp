@@ -61,6 +61,30 @@ TEST_F(WorldTest, OutlivesDrivingByHandWhichClearsTheGoals) {
   expect_built();
 }
 
+TEST_F(WorldTest, OutlivesAResetWithTheGoalsOfAnArm) {
+  ASSERT_EQ(load({{"scenario", "arm_post"}}), 200);
+  EXPECT_FALSE(get("/session")["edited"]);
+  ASSERT_EQ(post("/session/control", {{"action", "reset"}}), 200);
+  EXPECT_EQ(get("/session")["carry_goal"]["x"], 4.0);
+  EXPECT_FALSE(get("/session")["edited"]);
+
+  const json pose = {{"x", 1.5}, {"y", 0}, {"z", 0.9}, {"qw", 1}};
+  ASSERT_EQ(ask("PUT", "/session/hand_goal", pose.dump()).status, 200);
+  EXPECT_TRUE(eventually([&] { return get("/session")["edited"].get<bool>(); }));
+  ASSERT_EQ(post("/session/requests", {{"type", "joystick"}, {"forward", 0.1}, {"turn", 0}}), 200);
+  EXPECT_TRUE(eventually([&] { return get("/session")["hand_goal"].is_null(); }));
+  ASSERT_EQ(post("/session/control", {{"action", "reset"}}), 200);
+  const json session = get("/session");
+  EXPECT_EQ(session["hand_goal"]["z"], 0.9);
+  EXPECT_TRUE(session["carry_goal"].is_null());
+  EXPECT_TRUE(session["goal"].is_null());
+
+  ASSERT_EQ(ask("PUT", "/session/goal", R"({"x":1,"y":1})").status, 200);
+  ASSERT_EQ(post("/session/control", {{"action", "reset"}}), 200);
+  EXPECT_TRUE(get("/session")["hand_goal"].is_null());
+  EXPECT_EQ(get("/session")["goal"]["x"], 1.0);
+}
+
 TEST_F(WorldTest, TheNameOfTheScenarioLoadsItAsItIsInTheLibrary) {
   build();
   ASSERT_EQ(load({{"scenario", "case1"}}), 200);

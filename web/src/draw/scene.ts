@@ -1,4 +1,5 @@
 // web/src/draw/scene.ts: the whole scene from above, from the lowest drawing to the uppermost.
+import type { HandGoalJson } from "../contract";
 import { Obstacle, is_ground } from "../obstacle";
 import { Point, Pose, distance } from "../geometry";
 import { Goal } from "../link/frame";
@@ -18,11 +19,12 @@ import { Insets, View } from "./view";
 import { draw_grid, draw_obstacles, draw_scale, trace_obstacle } from "./world";
 
 /** A goal without an index is the one to which the robot drives. */
-export type Selection = { kind: "goal"; index?: number } | { kind: "obstacle"; id: number } | null;
+export type Selection = { kind: "goal"; index?: number } | { kind: "obstacle"; id: number } | { kind: "hand" } | null;
 
 /** An edit in progress: drawn, but not sent. */
 export interface Draft {
   goal?: Goal;
+  hand?: HandGoalJson; // of an arm
   obstacle?: Obstacle;
   start?: Pose;
   sketch?: Point[]; // corners so far
@@ -51,6 +53,7 @@ export interface Overlay {
   handles?: boolean;           // of the selected obstacle
   pointer?: Point | null;      // the place of W under the mouse or the crosshair
   preview?: Goal | null;       // a goal that is not sent yet
+  hand?: HandGoalJson | null;  // a goal of the arm's hand that is not sent yet
   /** Another colour of the path: the Runs view draws the first of two runs in the accent. */
   path?: "accent";
 }
@@ -79,6 +82,17 @@ export function draw_on_ground(drawings: GroundDrawings): void {
 export function lacks_ground(scene: SceneState): boolean {
   return !grounds && (scene.obstacles.some(is_ground) || !!scene.frame?.tilt || senses_ground(scene));
 }
+
+interface ArmDrawings { draw_plan: DrawArm; draw_arm: DrawArm }
+type DrawArm = (g: Context, view: View, palette: Palette, scene: SceneState, overlay: Overlay) => void;
+let arms: ArmDrawings | null = null;
+
+/** Draws arms from now on. */
+export function draw_arms(drawings: ArmDrawings): void {
+  arms = drawings;
+}
+/** Whether `scene` has an arm that arm/draw.ts has yet to draw. */
+export const lacks_arm = (scene: SceneState): boolean => !arms && scene.arm !== null;
 
 export const kDrift = 0.03; // [m] of odometry from which the true pose is drawn as well
 
@@ -111,6 +125,7 @@ export function draw_scene(g: Context, view: View, palette: Palette,
   driver?.draw_sectors(g, view, palette, scene, overlay.hidden);
   draw_ways(g, view, palette, scene, overlay);
   driver?.draw_ways_ahead(g, view, palette, scene, overlay.hidden);
+  arms?.draw_plan(g, view, palette, scene, overlay);
   if (pose && scene.drives && on(kOwn.safety)) draw_safety(g, view, palette, pose, scene.safety_distance);
   draw_goals(g, view, palette, scene, overlay);
   if (canvas) for (const layer of below) if (!grids.includes(layer)) draw_layer(canvas, layer);
@@ -120,6 +135,7 @@ export function draw_scene(g: Context, view: View, palette: Palette,
   if (f?.truth && on(kOwn.truth) && distance(f.truth.pose, f.pose) > kDrift) {
     draw_truth(g, view, palette, f.truth.pose, scene.radius, scene.hull);
   }
+  arms?.draw_arm(g, view, palette, scene, overlay);
   if (canvas) for (const layer of above) draw_layer(canvas, layer);
   driver?.draw_wall_words(g, view, palette, scene, overlay.hidden);
   const held = scene.obstacles.find((o) => o.id === selected);

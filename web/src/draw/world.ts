@@ -6,6 +6,8 @@ import { Context, circle, fill, stroke, trace, write } from "./marks";
 import { Palette } from "./palette";
 import { Insets, View } from "./view";
 
+const kBeneath = 0.45; // of the colour of an obstacle with room below it
+
 /** A line every metre, every fifth one stronger; wider steps when zoomed out. */
 export function draw_grid(g: Context, view: View, palette: Palette): void {
   const step = view.scale >= 24 ? 1 : view.scale >= 9 ? 5 : 10;
@@ -43,8 +45,10 @@ export function draw_obstacles(g: Context, view: View, palette: Palette, obstacl
   selected: number | null, hovered: number | null): void {
   for (const o of obstacles) {
     trace_obstacle(g, view, o);
+    g.globalAlpha = o.bottom > 0 ? kBeneath : 1; // what is below it is seen
     fill(g, palette.obst);
-    stroke(g, o.id === hovered ? palette.text : palette.obstline, 1.5);
+    g.globalAlpha = 1;
+    stroke(g, o.id === hovered ? palette.text : palette.obstline, 1.5, o.bottom > 0 ? [6, 3] : []);
     if (o.id === selected) stroke(g, palette.accent, 2.5);
   }
 }

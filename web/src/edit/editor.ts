@@ -183,6 +183,7 @@ export class Editor {
   /** A simulated robot drives at once; real hardware only after go_there(). */
   want_goal(goal: Goal | null, further = false): void {
     this.app_.go_live();
+    if (goal && this.app_.desk?.carry(goal)) return;
     if (!this.app_.on_hardware) {
       if (goal) this.app_.done_step(kGoalStep);
       const { route } = this.app_.scene;
@@ -200,7 +201,9 @@ export class Editor {
   }
   /** Replaces all goals of a simulated robot. */
   want_route(label: string, to: Route): void {
-    void this.edit(route_edit(label, this.app_.scene.route, to));
+    const { route, arm_asked: asked } = this.app_.scene;
+    const edit = route_edit(label, route, to);
+    void this.edit(asked && asked.type !== "set_joints" ? { ...edit, backward: asked } : edit);
   }
   /** Changes shape, size or path of an obstacle. */
   change(label: string, from: Obstacle, to: Obstacle): Promise<Accepted | null> {

@@ -1,4 +1,5 @@
 // web/src/edit/facts.ts: the numbers of a thing in the scene, as the wire brings them, for its card.
+import { hand_goal_card, link_card, planned_card } from "../arm/inspect";
 import { Point, Pose, degrees, distance, wrap_angle } from "../geometry";
 import {
   LayerView, Place, arcs, arrows, circles, kGround, kScanHeight, kStripHeight, kUnknownCell, places, sectors,
@@ -46,6 +47,9 @@ export function card_of(scene: SceneState, thing: Thing): Card | null {
     case "goal": return goal_card(scene, thing.index);
     case "obstacle": return obstacle_card(scene, thing.id);
     case "ground": return ground_card(scene, thing.id, thing.at);
+    case "link": return link_card(scene, thing.link);
+    case "hand_goal": return hand_goal_card(scene);
+    case "planned": return planned_card(scene, thing.index);
     case "robot": return robot_card(scene);
   }
 }
@@ -183,12 +187,12 @@ function arrow_card(scene: SceneState, layer: LayerView, pose: Pose, index: numb
   const arrow = arrows(layer, pose).at(index);
   if (!arrow) return null;
   const { at, by } = arrow;
-  const length = Math.hypot(by.x, by.y);
+  const length = Math.hypot(by.x, by.y, by.z ?? 0);
   const token = token_of(layer);
   const unit = is_scaled(layer) ? "m" : layer.unit;
   const of = (name: string) => measure_of(scene, name);
   const side = layer.name === "strip.external" ? side_of_force(scene, layer, pose, index) : undefined;
-  const rows = [{ label: is_scaled(layer) ? "Force" : "Speed", value: fixed(length, 3), unit, token },
+  const rows = [{ label: is_scaled(layer) ? "Force" : unit === "m" ? "Distance" : "Speed", value: fixed(length, 3), unit, token },
     turned("Towards, in W", Math.atan2(by.y, by.x)),
     { label: "Along x, y", value: `${fixed(by.x, 3)}, ${fixed(by.y, 3)}`, unit },
     ...(side ? [metres("Nearest return, d", distance(pose, side.point), "filtered")] : [])];
@@ -282,7 +286,7 @@ function obstacle_card(scene: SceneState, id: number): Card | null {
   const o = scene.obstacles.find((each) => each.id === id);
   if (!o) return null;
   const moving = scene.frame?.moved.some((m) => m.id === id) ?? false;
-  const rows = [position(o.pose), ...size_rows(o), metres("Height", o.height)];
+  const rows = [position(o.pose), ...size_rows(o), ...(o.bottom > 0 ? [metres("Bottom", o.bottom)] : []), metres("Height", o.height)];
   const radius = o.kind === "cylinder" ? o.radius : Math.min(o.length || 1, o.width || 1) / 2;
   return { title: obstacle_title(o), note: moving ? "moves by itself" : "", rows, law: null, at: o.pose, height: o.height, radius,
     long: o.kind === "wall" };

@@ -38,6 +38,8 @@ export interface GestureTarget {
   draft(draft: Draft): void;
   hover(id: number | null): void;
   changed(): void;
+  /** The goal of an arm's hand. */
+  arm?(): { near(view: View, px: Point): boolean; drag(view: View, px: Point): Drawing | null } | null;
 }
 
 /** A target that only shows: its view moves, and nothing is edited. */
@@ -56,7 +58,7 @@ const kGrabPixels = 8;   // from an obstacle's edge a press still hits it
 const kTurnStep = Math.PI / 36; // [rad] of a turn by the handle
 
 /** A gesture that draws: its draft while the pointer is at `to` in W, and its edit at the end. */
-interface Drawing {
+export interface Drawing {
   kind: "draw";
   px: Point;
   draft(to: Point, dragged: boolean): Draft;
@@ -168,6 +170,10 @@ export class Gestures {
     const { scene } = this.t_;
     this.measure_ = undefined;
     if (is_sketch(tool)) return this.sketching(px); // also on an obstacle: walls meet
+    const arm = this.t_.arm?.();
+    if (tool === "hand" || (arm?.near(this.t_.view, px) && this.t_.selection()?.kind === "hand")) {
+      return arm?.drag(this.t_.view, px) ?? pan(px, false);
+    }
     const handle = this.handle_at(px);
     if (handle) return this.by_handle(px, handle);
     const under = this.obstacle_at(px);
@@ -309,7 +315,8 @@ export class Gestures {
   private inspect(px: Point): void {
     const obstacle = this.obstacle_at(px);
     const goal = this.goal_at(px);
-    if (obstacle) this.t_.select({ kind: "obstacle", id: obstacle.id });
+    if (this.t_.arm?.()?.near(this.t_.view, px)) this.t_.select({ kind: "hand" });
+    else if (obstacle) this.t_.select({ kind: "obstacle", id: obstacle.id });
     else if (goal) this.t_.select(goal.index === null ? { kind: "goal" } : { kind: "goal", index: goal.index });
     else this.t_.select(null);
   }

@@ -1,5 +1,7 @@
 // web/src/edit/inspect.ts: finds the thing of the scene under a pointer, in the view from above and
 // in 3D alike. A thing is named so that later frames can find it again.
+import type { Link } from "../arm/chain";
+import { arm_at, plan_at } from "../arm/inspect";
 import { Point, Pose, distance, to_child, wrap_angle, least } from "../geometry";
 import {
   LayerView, arcs, arrows, circles, grade_of, grid_place, kGround, kRing, kScanHeight, kStripHeight, kTallest, kUnknownCell,
@@ -20,6 +22,9 @@ export type Thing =
   | { kind: "goal"; index: number }                  // 0: the present one
   | { kind: "obstacle"; id: number }
   | { kind: "ground"; id: number; at: Point }        // a ramp, step or trench, at a place on it
+  | { kind: "link"; link: Link }                     // of an arm
+  | { kind: "hand_goal" }
+  | { kind: "planned"; index: number }               // a place of the arm's plan
   | { kind: "robot" };
 
 /** How a pointer sees the scene. */
@@ -46,11 +51,12 @@ export function thing_at(scene: SceneState, shown: Shown, eye: Eye): Thing | nul
   const layers = visible_layers(scene, shown.hidden);
   const from_above = eye.at && eye.scale !== undefined ? body_at(scene, eye.at, eye.slack / eye.scale) : null;
   const body = eye.body ? eye.body() : from_above;
-  const robot = body?.kind === "robot" ? body : null;
+  const arm = arm_at(scene, eye);
+  const robot = arm ?? (body?.kind === "robot" || body?.kind === "link" ? body : null);
   const small = [...beam_hits(scene, shown, eye), ...mark_hits(scene, layers, shown, eye)];
   return nearest(small, robot ? Math.min(kOnRobot, eye.slack) : eye.slack)
     ?? goal_at(scene, eye) ?? robot
-    ?? nearest([...line_hits(scene, layers, eye), ...path_hits(scene, shown, eye)], eye.slack)
+    ?? plan_at(scene, shown, eye) ?? nearest([...line_hits(scene, layers, eye), ...path_hits(scene, shown, eye)], eye.slack)
     ?? circle_at(scene, layers, eye) ?? body ?? (eye.at && ground_at(scene, layers, eye.at));
 }
 

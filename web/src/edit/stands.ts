@@ -23,8 +23,14 @@ export function change_since(step: Step, scene: SceneState): string | null {
     case "remove_obstacle":
       return scene.obstacles.some((o) => o.id === step.id) ? "It has been put back since." : null;
     case "set_goals":
-      return same_goals(scene.route.goals, step.goals) && scene.route.loop === (step.loop ?? false)
+      return same_goals(scene.route.goals, step.goals) && scene.route.loop === (step.loop ?? false) && !of_hand(scene.arm_asked)
         ? null : "The goals have been changed since.";
+    case "clear_goal":
+      return scene.arm_asked ? "The arm has got another goal since." : null;
+    case "set_hand_goal":
+    case "set_joints":
+    case "carry":
+      return alike(scene.arm_asked, step) ? null : "The arm has got another goal since.";
     case "start":
       return scene.start && near(scene.start.x, step.pose.x) && near(scene.start.y, step.pose.y)
         ? null : "The start has been moved since.";
@@ -35,6 +41,18 @@ export function change_since(step: Step, scene: SceneState): string | null {
 
 function gone(id: number): string {
   return `Obstacle ${id} has been removed since.`;
+}
+
+/** Whether goals of the base would replace it. */
+function of_hand(asked: SceneState["arm_asked"]): boolean {
+  return asked !== null && asked.type !== "set_joints";
+}
+
+/** Whether `now` has all that `then` has. */
+function alike(now: unknown, then: unknown): boolean {
+  if (typeof then === "number") return near(Number(now), then);
+  if (typeof then !== "object" || then === null) return now === then || (!now && !then);
+  return Object.entries(then).every(([key, value]) => alike((now as Record<string, unknown> | null)?.[key], value));
 }
 
 function near(a: number, b: number): boolean {
@@ -51,5 +69,5 @@ function same_obstacle(now: Obstacle, json: ObstacleJson): boolean {
   const then = obstacle_from_json(json);
   const place = now.path || (near(now.pose.x, then.pose.x) && near(now.pose.y, then.pose.y));
   return !!place && now.kind === then.kind && near(now.radius, then.radius) && near(now.length, then.length) &&
-    near(now.width, then.width) && near(now.low, then.low) && near(now.height, then.height) && now.points.length === then.points.length && !now.path === !then.path;
+    near(now.width, then.width) && near(now.low, then.low) && near(now.height, then.height) && near(now.bottom, then.bottom) && now.points.length === then.points.length && !now.path === !then.path;
 }

@@ -1,5 +1,6 @@
 // web/src/link/frame.ts: one FlatBuffers frame (telemetry.fbs) as a plain object.
 import * as flatbuffers from "flatbuffers";
+import type { HandGoalJson } from "../contract";
 import { Point, Pose } from "../geometry";
 import { LayerView } from "../layer";
 import { Obstacle, ObstacleKind, PathJson } from "../obstacle";
@@ -45,6 +46,7 @@ const kHalts = ["none", "disarmed", "base_lost", "scanner_lost", "bad_line", "sc
   "stop_button", "base_fault", "over_current", "battery_low", "motors_off", "late_tick",
   "floor_lost", "floor_fault"] as const;
 export type Halt = (typeof kHalts)[number];
+const kArmStates = ["rest", "turns", "plans", "goes", "waits", "arrived", "given_up"] as const;
 const kMissions = ["idle", "driving", "arrived", "stuck", "held"] as const;
 const kKinds: ObstacleKind[] = ["cylinder", "box", "polygon", "wall", "ramp", "trench"];
 
@@ -57,6 +59,17 @@ export interface Truth {
 
 /** How the robot stands: its height above z = 0, left side up and nose down positive [m, rad]. */
 export interface Tilt { z: number; roll: number; pitch: number }
+
+/** The arm's decision in a tick. */
+export interface ArmFrame {
+  state: (typeof kArmStates)[number];
+  clearance: number[];      // [m] of base, mast, upper arm, forearm and hand to all that the robot knows
+  own: number;              // [m] of the arm to the robot itself
+  hand_goal: HandGoalJson | null;
+  joint_goal: number[];     // [rad]; empty: none
+  plan: number;             // 0: none
+  ghost: Float32Array | null; // of a new plan: x, y, heading and the joints of each of its poses
+}
 
 /** One tick of a run; positions in W, metres, radians, seconds. */
 export interface Frame {
@@ -90,6 +103,9 @@ export interface Frame {
   measures: Measure[];
   readings: ChannelReading[]; // of further sensors; only those new in this tick
   moved: { id: number; pose: Pose }[]; // obstacles that move by themselves
+  joints: number[] | null;      // [rad] measured; robots with an arm only, as the next two
+  joint_rates: number[];        // [rad/s] measured
+  arm: ArmFrame | null;
 }
 
 interface XY { x(): number; y(): number }
@@ -113,6 +129,7 @@ export function decode_frame(bytes: Uint8Array, legends: Legends): Frame {
   const encoders = f.encoders();
   const goal = f.goal();
   const decision = f.decision();
+  const joints = f.joints();
   const what = f.news()?.what();
   const { layers, measures } = shown(f, legends.find(legend_of(f)));
   return {
@@ -152,7 +169,30 @@ export function decode_frame(bytes: Uint8Array, legends: Legends): Frame {
     measures,
     readings: list(f.channelsLength(), (i) => channel_reading(f.channels(i)!, stamp)),
     moved: list(f.movedLength(), (i) => ({ id: f.moved(i)!.id(), pose: pose(f.moved(i)) })),
+    joints: joints && list(joints.positionsLength(), (i) => joints.positions(i)!),
+    joint_rates: joints ? list(joints.ratesLength(), (i) => joints.rates(i)!) : [],
+    arm: arm_of(f.arm()),
   };
+}
+
+function arm_of(a: wire.Arm | null): ArmFrame | null {
+  return a && {
+    state: kArmStates[a.state()] ?? "rest",
+    clearance: list(a.clearanceLength(), (i) => a.clearance(i)!),
+    own: a.ownClearance(),
+    hand_goal: hand_goal(a.handGoal()),
+    joint_goal: list(a.jointGoalLength(), (i) => a.jointGoal(i)!),
+    plan: a.plan(),
+    ghost: a.ghostArray()?.slice() ?? null,
+  };
+}
+
+function hand_goal(g: wire.SetHandGoal | null): HandGoalJson | null {
+  const at = g?.position(), q = g?.attitude(), then = g?.then();
+  return at && q ? {
+    x: at.x(), y: at.y(), z: at.z(), qw: q.w(), qx: q.x(), qy: q.y(), qz: q.z(),
+    arm_angle: g!.armAngle() ?? undefined, base_stays: g!.baseStays(), then: then ? wanted(then) : undefined,
+  } : null;
 }
 
 /** Decodes frames of one run; a later frame may bring the legend of an earlier one. */
@@ -217,6 +257,7 @@ function obstacle(o: wire.Obstacle): Obstacle {
     points: list(o.pointsLength(), (i) => point(o.points(i))),
     height: kind === "trench" ? 0 : kind === "ramp" ? height : height || 1,
     low,
+    bottom: o.bottom(),
     path: path(o.path()),
     extra: {},
   };

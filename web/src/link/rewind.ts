@@ -182,7 +182,7 @@ export class Rewind {
     if (!this.past_) {
       this.past_ = {
         ...this.live_, frame: null, sweeps: [], filtered: new FilteredScan(), readings: new Map(), layers: new Map(),
-        words: null,
+        words: null, arm_asked: null, arm_plan: null,
       };
       this.pages_ = new FramePages(this.source_.frames(run));
     }

@@ -1,4 +1,5 @@
 // web/src/state/layer_groups.ts: the rows of the legend, by groups.
+import { kArmLayers } from "../arm/layers";
 import { is_ground } from "../obstacle";
 import { LayerKey, is_sensed, kOwn, own } from "./layers";
 import type { SceneState } from "./scene";
@@ -14,7 +15,7 @@ type Group = (typeof kGroups)[number];
 function group_of(key: LayerKey): Group {
   if (is_sensed(key.name)) return "Senses";
   if (key.scaled) return "Forces";
-  return key.token === "warn" || key.kind === "grid" || key.kind === "polar" ? "World" : "Ways";
+  return key.name === "arm.near" || key.token === "warn" || key.kind === "grid" || key.kind === "polar" ? "World" : "Ways";
 }
 
 /**
@@ -30,8 +31,8 @@ export function layer_groups(scene: SceneState, compared = false): { title: Grou
       [...when(readings.size > 0, kOwn.ranging), ...when((frame?.bumpers.length ?? 0) > 0, kOwn.bumpers)]],
     Forces: [[], []],
     Ways: [[], [...(compared ? kCompared : [kOwn.path]), ...when(scene.stick !== null, kOwn.wanted, kOwn.executed),
-      ...when(!!frame?.truth, kOwn.truth), ...when(drives, kOwn.route)]],
-    World: [[...when(drives, kOwn.safety, kOwn.goal), kOwn.robot, ...when(scene.world, kOwn.start, kOwn.obstacles),
+      ...when(!!frame?.truth, kOwn.truth), ...when(drives, kOwn.route), ...when(!!frame?.arm, kArmLayers.plan)]],
+    World: [[...when(drives, kOwn.safety, kOwn.goal), kOwn.robot, ...when(scene.arm !== null, kArmLayers.links, kArmLayers.goal), ...when(scene.world, kOwn.start, kOwn.obstacles),
       ...when(scene.obstacles.some(is_ground), kOwn.ground), ...when(scene.obstacles.some((o) => o.path), kOwn.ways)], [kOwn.mesh]],
   };
   return kGroups.map((title) => {

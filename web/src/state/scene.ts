@@ -1,9 +1,9 @@
 // web/src/state/scene.ts: the state that is drawn, as one plain object, and how frames and the
 // session's document change it. Live session and stored run fill the same object.
-import { RobotInfo, SessionState } from "../contract";
+import type { ArmInfo, ArmRequest, RobotInfo, SessionState } from "../contract";
 import { Bounds, Point, Pose, distance, empty_bounds, include } from "../geometry";
 import { LayerView } from "../layer";
-import { Frame, FrameRequest, Goal, Words } from "../link/frame";
+import type { ArmFrame, Frame, FrameRequest, Goal, Words } from "../link/frame";
 import { Obstacle, include_obstacle, is_ground, obstacle_from_json } from "../obstacle";
 import { Columns } from "./columns";
 import { EventLog } from "./events";
@@ -30,6 +30,9 @@ export interface SceneState {
   goal: Goal | null;
   goals_ahead: Point[]; // after that one, in order
   route: Route;         // all goals of the live robot, as set
+  arm: ArmInfo | null;         // of a robot with one
+  arm_plan: ArmFrame | null;   // the frame's that brought the present plan
+  arm_asked: ArmRequest | null; // of the live robot's arm; null: nothing
   radius: number;         // [m] hull
   hull: { half_length: number; half_width: number } | null; // [m] of a rectangle; null: a disc
   half_track: number;     // [m]
@@ -49,7 +52,7 @@ export function new_scene(most_rows = Infinity): SceneState {
   return {
     frame: null, sweeps: [], filtered: new FilteredScan(), readings: new Map(), layers: new Map(), known: new Map(),
     words: null, inclination: null, stick: null, columns: new Columns(most_rows), rows: 0, obstacles: [], start: null,
-    goal: null, goals_ahead: [], route: { goals: [], next: 0, loop: false }, radius: 0.35, hull: null, half_track: 0.25, top: { v: Infinity, omega: Infinity }, safety_distance: 1, parameters: {},
+    goal: null, goals_ahead: [], route: { goals: [], next: 0, loop: false }, arm: null, arm_plan: null, arm_asked: null, radius: 0.35, hull: null, half_track: 0.25, top: { v: Infinity, omega: Infinity }, safety_distance: 1, parameters: {},
     scan_timeout: 0, events: new EventLog(), run: null, controller: "", heard_at: null, drives: true, world: true,
   };
 }
@@ -73,6 +76,7 @@ export function forget_instant(scene: SceneState): void {
   scene.words = null;
   scene.inclination = null;
   scene.stick = null;
+  scene.arm_plan = null;
 }
 
 export function fold_session(scene: SceneState, s: SessionState): void {
@@ -86,12 +90,18 @@ export function fold_session(scene: SceneState, s: SessionState): void {
   scene.run = run;
   scene.obstacles = moved_by_themselves((s.obstacles ?? []).map(obstacle_from_json), scene.frame);
   scene.start = s.scenario?.start ?? null;
-  scene.goal = goal_from_json(s.goal);
+  scene.goal = goal_from_json(s.goal ?? s.carry_goal);
   scene.goals_ahead = s.goals_ahead ?? [];
   scene.route = route_of(s);
+  scene.arm_asked = asked_of(s);
   take_robot(scene, s.robot);
   scene.world = s.source === "simulation";
   take_parameters(scene, s.parameters ?? {});
+}
+
+function asked_of({ hand_goal, carry_goal, joint_goal }: SessionState): ArmRequest | null {
+  return hand_goal ? { type: "set_hand_goal", ...hand_goal } : carry_goal ? { type: "carry", ...carry_goal }
+    : joint_goal ? { type: "set_joints", position: joint_goal } : null;
 }
 
 /** All goals, reached and ahead. */
@@ -108,6 +118,7 @@ export function take_robot(scene: SceneState, robot: Partial<RobotInfo> = {}): v
   scene.top = { v: robot.max_v ?? scene.top.v, omega: robot.max_omega ?? scene.top.omega };
   const { half_length = 0, half_width = 0 } = robot;
   scene.columns.channels = robot.channels ?? [];
+  scene.arm = robot.arm ?? null;
   scene.hull = half_length > 0 ? { half_length, half_width } : null;
 }
 
@@ -141,6 +152,8 @@ export function show_frame(scene: SceneState, f: Frame): void {
   scene.words = f.words ?? scene.words;
   scene.inclination = f.inclination ?? scene.inclination;
   scene.stick = stick_after(scene.stick, f);
+  if (f.arm?.ghost) scene.arm_plan = f.arm;
+  else if (scene.arm_plan?.plan !== f.arm?.plan) scene.arm_plan = null;
   scene.obstacles = moved_by_themselves(scene.obstacles, f);
   for (const [name, layer] of scene.layers) if (layer.kind !== "grid" || !f.goal) scene.layers.delete(name);
   for (const layer of f.layers) {
@@ -158,6 +171,7 @@ export function held_of(f: Frame): string[] {
     ...(f.words ? ["words"] : []),
     ...(f.stick ? ["stick"] : []),
     ...(f.inclination ? [kInclination] : []),
+    ...(f.arm?.ghost ? ["plan"] : []),
     ...(f.goal ? [] : ["no goal"]),
     ...(f.moved.length > 0 ? ["moved"] : []),
     ...f.layers.filter((l) => l.kind === "grid").map((l) => `grid ${l.name}`),
@@ -219,6 +233,8 @@ export function scene_bounds(scene: SceneState): Bounds {
   const pose = robot_pose(scene);
   if (scene.start && scene.world) include(b, scene.start.x, scene.start.y, scene.radius + 0.25);
   if (scene.goal) include(b, scene.goal.x, scene.goal.y, 0.7);
+  const hand = scene.frame?.arm?.hand_goal;
+  if (hand) include(b, hand.x, hand.y, 0.3);
   for (const goal of scene.goals_ahead) include(b, goal.x, goal.y, 0.7);
   for (const o of scene.obstacles) include_obstacle(b, o);
   const empty = !scene.world || scene.obstacles.length === 0;

@@ -38,6 +38,21 @@ function signal(words: Words, of: FrameSignal["of"]): FrameSignal {
 export const kSensors = "Sensors";
 const [kMotion, kSafety, kControl, kTruth] = ["Motion", "Clearance", "Control", "Simulation"];
 
+/** Of the seven joints, and of the links: robots with an arm have them. */
+const kInTurn: Pick<Signal, "colour" | "dash">[] = [
+  ...(["accent", "filtered", "path", "ok"] as const).map((colour) => ({ colour, dash: [] })),
+  ...(["accent", "filtered", "path"] as const).map((colour) => ({ colour, dash: kDash })),
+];
+const kArm = kInTurn.flatMap((look, k) => [
+  signal({ ...look, name: `joint[${k}]`, label: `Joint ${k + 1}`, unit: "rad", group: "Arm", plot: "Joints", least: [-1, 1], usual: true,
+    meaning: "Position that the arm measures; the shoulder's joints come first" }, (f) => f.joints?.[k] ?? NaN),
+  signal({ ...look, name: `joint_moves[${k}]`, label: `Joint ${k + 1}`, unit: "rad/s", group: "Arm: rates", plot: "Joint rates", least: [-0.5, 0.5],
+    meaning: "Turn rate that the arm measures" }, (f) => f.joint_rates[k] ?? NaN),
+]);
+const kLinks = ["base", "mast", "upper_arm", "forearm", "hand"].map((link, k) =>
+  signal({ ...kInTurn[k], name: `clearance.${link}`, label: `Clear of ${link.replace("_", " ")}`, unit: "m", group: "Arm", plot: "Clearance of the links",
+    meaning: "To the nearest thing that the robot knows" }, (f) => f.arm?.clearance[k] ?? NaN));
+
 /** The signals of every robot. A signal without a value so far is not offered. */
 export const kFrameSignals: FrameSignal[] = [
   signal({ name: "clearance", label: "Clear ahead", unit: "m", group: kSafety, plot: "Clearance", least: [0, 1],
@@ -109,4 +124,7 @@ export const kFrameSignals: FrameSignal[] = [
   signal({ name: "truth.collided", label: "Contact", unit: "", group: kTruth, plot: "States", least: [0, 1], digits: 0,
     colour: "external", meaning: "1 while the hull touches an obstacle in the simulation" },
   (f) => (f.truth ? flag(f.truth.collided) : NaN)),
+  ...kArm, ...kLinks,
+  signal({ name: "clearance.own", label: "Clear of itself", unit: "m", group: "Arm", plot: "Clearance of the links", colour: "muted",
+    meaning: "From the arm to the robot itself" }, (f) => f.arm?.own ?? NaN),
 ];

@@ -47,7 +47,7 @@ export interface UiState {
   layers: boolean;             // the layer panel is open
   shortcuts: boolean;
   sheet: boolean;
-  tab: string; // of the right panel
+  tab: string; // of the right panel; "": its first
   loading: string | null;
   stop: StopState;
   preview: Preview | null;
@@ -64,7 +64,7 @@ export function first_ui(): UiState {
     view: "drive", looking: false, run: null, experiment: null, compare: [], place: { time: null, camera: null },
     theme: stored_theme(), tool: stored_tool(), selection: null, three: stored_three(), follow: false,
     snap: true, appending: false, force_scale: 1, hidden: stored_hidden(), layers: stored_open(), shortcuts: false,
-    sheet: false, tab: "robot", loading: null,
+    sheet: false, tab: "", loading: null,
     stop: { phase: "none", since: 0 }, preview: null, step: kept_step(), views: false, undo: null, redo: null,
   };
 }

@@ -8,7 +8,7 @@ import {
   kStripHeight, kTallest, lines, places, sectors, texts,
 } from "../layer";
 import { is_scaled, is_sketched, token_of } from "../state/layers";
-import { dot, flat, placed, push_arrow, ribbon, vertices } from "./shapes";
+import { dot, flat, placed, push_arrow, ribbon, tube, vertices } from "./shapes";
 
 /** Where and how a layer is drawn. */
 export interface Stage {
@@ -20,6 +20,7 @@ export interface Stage {
 }
 type Build = (stage: Stage, layer: LayerView, colour: string) => void;
 
+const kRound = 0.008;             // [m] of a line with heights, to its sides
 const kDash = 0.12;               // [m] of a dash, and of the gap after it
 
 /** Gives every material of `object` the opacity `alpha`. */
@@ -69,7 +70,8 @@ function build_points(stage: Stage, layer: LayerView, colour: string): void {
 function build_polyline(stage: Stage, layer: LayerView, colour: string): void {
   const planned = is_sketched(layer);
   for (const line of lines(layer, stage.robot)) {
-    band(stage, layer, line, layer.style === "solid" ? 0.06 : 0.02, planned ? kGround : kStripHeight, colour);
+    if (layer.axes > 2) stage.group.add(tube(line.map((p) => [p.x, p.y, p.z ?? 0] as const), kRound, colour));
+    else band(stage, layer, line, layer.style === "solid" ? 0.06 : 0.02, planned ? kGround : kStripHeight, colour);
   }
 }
 

@@ -82,14 +82,15 @@ export function solid(o: Obstacle, p: Palette, chosen: boolean): THREE.Object3D 
 
 function shape_of(o: Obstacle, material: THREE.Material): THREE.Mesh {
   if (o.kind === "cylinder") {
-    const geometry = new THREE.CylinderGeometry(o.radius, o.radius, o.height, 48);
-    const mesh = placed(geometry, material, o.pose, o.height / 2);
+    const geometry = new THREE.CylinderGeometry(o.radius, o.radius, o.height - o.bottom, 48);
+    const mesh = placed(geometry, material, o.pose, (o.bottom + o.height) / 2);
     mesh.rotation.x = Math.PI / 2;
     return mesh;
   }
   const shape = new THREE.Shape(outline(o).map((c) => new THREE.Vector2(c.x, c.y)));
-  return new THREE.Mesh(new THREE.ExtrudeGeometry(shape, { depth: o.height, bevelEnabled: false }),
-    material);
+  const mesh = new THREE.Mesh(new THREE.ExtrudeGeometry(shape, { depth: o.height - o.bottom, bevelEnabled: false }), material);
+  mesh.position.z = o.bottom;
+  return mesh;
 }
 
 export function goal(at: Goal, p: Palette): THREE.Group {
@@ -132,8 +133,19 @@ export function ribbon(line: (Point & { z?: number | null })[], width: number, z
   return new THREE.Mesh(vertices(xyz).setIndex(faces), flat(colour));
 }
 
+/** A round line through `places` of W, `radius` [m] thick. */
+export function tube(places: readonly (readonly [number, number, number])[], radius: number, colour: string, sides = 6): THREE.Mesh {
+  const path = new THREE.CurvePath<THREE.Vector3>();
+  for (let i = 1; i < places.length; ++i) {
+    const [a, b] = [new THREE.Vector3(...places[i - 1]), new THREE.Vector3(...places[i])];
+    if (a.distanceTo(b) > 1e-6) path.add(new THREE.LineCurve3(a, b));
+  }
+  const geometry = path.curves.length > 0 ? new THREE.TubeGeometry(path, 2 * path.curves.length, radius, sides) : new THREE.BufferGeometry();
+  return new THREE.Mesh(geometry, flat(colour));
+}
+
 /** The hull's outline at `pose`, on the floor. */
-export function outline_of(pose: Pose, scene: SceneState, colour: string): THREE.Object3D {
+export function outline_at(pose: Pose, scene: SceneState, colour: string): THREE.Object3D {
   const { hull, radius } = scene;
   const corners = hull
     ? [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(([a, b]) => [a * hull.half_length, b * hull.half_width])
@@ -179,16 +191,19 @@ export function pressed(f: Frame, radius: number, p: Palette): THREE.Object3D[] 
   });
 }
 
-/** A horizontal arrow by `v` [m], `times` enlarged. Arrows below 3 cm are left out. */
-export function push_arrow(group: THREE.Group, at: Point, v: Point, times: number, colour: string,
+/** An arrow by `v` [m], `times` enlarged; level without its z. Arrows below 3 cm are left out. */
+export function push_arrow(group: THREE.Group, at: Point, v: Point & { z?: number | null }, times: number, colour: string,
   z = 0.08): void {
-  const length = Math.hypot(v.x, v.y) * times;
+  const up = v.z ?? 0;
+  const length = Math.hypot(v.x, v.y, up) * times;
   if (length < 0.03) return;
-  const head = Math.min(0.12, length * 0.5);
-  const arrow = new THREE.ArrowHelper(new THREE.Vector3(v.x, v.y, 0).normalize(),
+  const head = Math.min(up === 0 ? 0.12 : 0.06, length * 0.5);
+  const arrow = new THREE.ArrowHelper(new THREE.Vector3(v.x, v.y, up).normalize(),
     new THREE.Vector3(at.x, at.y, z), length, colour, head, head * 0.7);
   group.add(arrow);
 }
+
+const kSlit = 0.34; // [m] the upper end of the slit through which the scanners of a high base see
 
 /** A hull with wheels, a scanner and an arrowhead, in R. */
 export function body(scene: SceneState, p: Palette): THREE.Object3D[] {
@@ -216,5 +231,10 @@ export function body(scene: SceneState, p: Palette): THREE.Object3D[] {
     new THREE.Vector2(x * (scene.hull?.half_length ?? r), y * width)));
   const nose = new THREE.Mesh(new THREE.ShapeGeometry(head), flat(p.bg));
   nose.position.z = 0.245;
-  return [hull, scanner, ...wheels, nose];
+  const rest = [hull, scanner, ...wheels, nose];
+  const top = scene.arm?.base_height ?? 0; // above the slit for the scanners
+  if (top <= kSlit) return rest;
+  const upper = upright(new THREE.CylinderGeometry(r, r, top - kSlit, 48), p.robot, (top + kSlit) / 2);
+  nose.position.z = top + 0.005;
+  return [...rest, upper];
 }

@@ -4,10 +4,14 @@ import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { use_app, use_ui } from "../app";
 import { read_palette } from "../draw/palette";
 import type { Insets } from "../draw/view";
-import { Point } from "../geometry";
-import { use_latest, use_listener } from "../state/store";
+import type { HandleName } from "../arm/gizmo";
+import { pointing_of } from "../arm/pose";
+import type { HandGoalJson } from "../contract";
+import { Point, degrees } from "../geometry";
+import { use_latest, use_listener, use_pulse } from "../state/store";
 import { Inspector } from "../ui/inspector";
 import { Probe } from "../ui/probe";
+import { fixed } from "../words";
 import type { World3 } from "./world";
 
 /** Why this browser cannot show 3D; null if it can. */
@@ -17,6 +21,25 @@ function no_webgl(): string | null {
   context?.getExtension("WEBGL_lose_context")?.loseContext();
   return context ? null
     : "This browser offers no WebGL 2, so the 3D view cannot be drawn. The view from above shows the same.";
+}
+
+const kHandles: Record<HandleName, (g: HandGoalJson) => string> = {
+  x: (g) => `Along x: ${fixed(g.x, 2)} m`, y: (g) => `Along y: ${fixed(g.y, 2)} m`, z: (g) => `Height: ${fixed(g.z, 2)} m`,
+  level: (g) => `Over the floor: ${fixed(g.x, 2)}, ${fixed(g.y, 2)} m`,
+  bearing: (g) => `Bearing: ${fixed(degrees(pointing_of(g).bearing), 0)}°`, pitch: (g) => `Pitch: ${fixed(degrees(pointing_of(g).pitch), 0)}°`,
+  turn: (g) => `Turn about itself: ${fixed(degrees(pointing_of(g).turn), 0)}°`,
+};
+
+/** The handle of the hand's goal under the pointer, with its number. */
+function GizmoWords(props: { handle: () => HandleName | null }): JSX.Element | null {
+  const { desk, ui } = use_app();
+  use_ui("tool", "selection", "view");
+  use_pulse(100);
+  const goal = ui.value.view === "drive" && desk?.chosen ? desk.goal : null;
+  const handle = props.handle();
+  return goal && (
+    <p class={`gizmo-words card ${handle ? "" : "idle"}`} data-testid="gizmo-words">{handle ? kHandles[handle](goal) : "Drag an axis to move the hand's goal, a ring to turn it"}</p>
+  );
 }
 
 /** `insets`: the margins that tools and cards cover. With `chase` the camera rides behind the robot. `on_above`: goes
@@ -45,7 +68,9 @@ export function SceneThree(props: { insets: () => Insets; chase?: boolean; on_ab
     const started = async () => {
       const { World3 } = await import("./world");
       if (gone || !box.current) return;
-      world.current = new World3(box.current, read_palette(), () => app.shown, () => ({ ...app.ui.value, chase: latest.current.chase }));
+      world.current = new World3(box.current, read_palette(), () => app.shown, () => ({
+          ...app.ui.value, chase: latest.current.chase, desk: app.ui.value.view === "drive" && app.scene.arm ? app.desk : null,
+        }));
       app.redraw = () => world.current?.request();
       app.fit_three = () => world.current?.fit();
     };
@@ -76,6 +101,7 @@ export function SceneThree(props: { insets: () => Insets; chase?: boolean; on_ab
       onPointerLeave={() => probe.left()}>
       <Inspector scene={app.shown} probe={probe} box={() => box.current} eye={eye} shown={() => app.ui.value}
         insets={props.insets} resting={() => world.current !== null} selection={() => null} crosshair={() => null} />
+      {!props.chase && <GizmoWords handle={() => world.current?.handle ?? null} />}
       {!props.chase && <button class={`follow small ${follow ? "on" : ""}`} aria-pressed={follow}
         onClick={() => app.ui.set({ follow: !follow })}>Follow the robot</button>}
     </div>

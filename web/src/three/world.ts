@@ -1,7 +1,9 @@
 // web/src/three/world.ts: the scene in 3D, from the state of the view from above: z up, metres.
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import { SessionState } from "../contract";
+import { HandGoalJson, SessionState } from "../contract";
+import type { Link } from "../arm/chain";
+import type { HandleName } from "../arm/gizmo";
 import { Palette } from "../draw/palette";
 import { Selection, kDrift } from "../draw/scene";
 import { Eye } from "../edit/inspect";
@@ -16,21 +18,25 @@ import { Orbit, orbits } from "../state/remembered";
 import { kRing, kWall } from "../state/stick";
 import { SceneState, robot_pose, scene_bounds } from "../state/scene";
 import { PlacedSweep, sweep_points } from "../state/sweeps";
+import { build_arm, build_hand_goal, build_plan } from "./arm";
 import { build_sectors, build_wall_words, build_ways_ahead } from "./driven";
 import { beside_holes, ground } from "./ground";
+import { Gizmo, HeldGoal } from "./gizmo";
 import { build_layer } from "./layers";
 import {
-  body, clear, goal, goals_ahead, grid, outline_of, points, pressed, ranging, ribbon, ring, solid, sun, vertices,
+  body, clear, goal, goals_ahead, grid, outline_at, points, pressed, ranging, ribbon, ring, solid, sun, vertices,
 } from "./shapes";
 
 interface Options {
   selection: Selection; force_scale: number; hidden: ReadonlySet<string>; follow: boolean; session: SessionState | null;
   chase?: boolean; // the camera rides behind the robot
+  desk: (HeldGoal & { draft: HandGoalJson | null }) | null; // of an arm that may be moved here
 }
 
 // The camera that rides behind the robot [m], R: its eye, and the point ahead that it looks at.
 const kChaseEye = [-2.4, 0, 1.9] as const, kChaseTarget = [1.3, 0, 0] as const;
 
+const kArmHeight = 0.5; // [m] that the middle of the view has with an arm
 const kMostPath = 1500;
 const kLate = 80;       // [ms] from asking for a picture to drawing it
 const kMostLate = 4;    // late ones in a row
@@ -45,6 +51,9 @@ export class World3 {
   private readonly statics_ = new THREE.Group();  // grid, obstacles, goal
   private readonly moving_ = new THREE.Group();   // path, the controller's layers
   private readonly robot_ = new THREE.Group();
+  private readonly arm_ = new THREE.Group();
+  private readonly plan_ = new THREE.Group();
+  private readonly gizmo_: Gizmo;
   /** From the level plane of the robot's senses and plans to the plane on which it stands. */
   private readonly stand_ = new THREE.Matrix4();
   private readonly raw_ = points(2.5);
@@ -53,7 +62,8 @@ export class World3 {
   private asked_ = 0; // [ms] when the pending drawing was asked for
   private late_ = 0;  // drawings in a row that came late
   private built_: unknown[] = [];
-  private hull_: SceneState["hull"] = null; // of the robot that was built
+  private planned_: unknown[] = [];
+  private hull_: unknown[] = []; // of the robot that was built
   private scenario_: string | null = null; // for which the camera was placed
   private turned_ = false;                 // by a hand
   private chases_ = false;                 // the camera rides behind the robot
@@ -67,6 +77,7 @@ export class World3 {
     this.renderer_.domElement.setAttribute("role", "img");
     box_.prepend(this.renderer_.domElement);
     this.camera_.up.set(0, 0, 1);
+    this.gizmo_ = new Gizmo(this.camera_, this.renderer_.domElement, () => this.options_().desk, () => this.request());
     this.controls_ = new OrbitControls(this.camera_, this.renderer_.domElement);
     this.controls_.maxPolarAngle = Math.PI / 2 - 0.03;
     this.controls_.minDistance = 0.8;
@@ -74,7 +85,7 @@ export class World3 {
     this.controls_.addEventListener("change", () => this.request());
     this.controls_.addEventListener("start", () => (this.turned_ = true));
     this.world_.add(new THREE.HemisphereLight(0xffffff, 0x667788, 2.2), sun(), this.statics_,
-      this.moving_, this.robot_, this.raw_, this.filtered_);
+      this.moving_, this.robot_, this.arm_, this.plan_, this.raw_, this.filtered_, this.gizmo_.group);
     this.observer_ = new ResizeObserver(() => this.resize());
     this.observer_.observe(box_);
     this.set_palette(palette_);
@@ -92,8 +103,14 @@ export class World3 {
     this.world_.background = new THREE.Color(palette.bg);
     (this.raw_.material as THREE.PointsMaterial).color.set(palette.scan);
     this.built_ = []; // so that everything is built again in the new colours
+    this.planned_ = [];
     clear(this.robot_);
     this.request();
+  }
+
+  /** The handle of the gizmo that a pointer is on. */
+  get handle(): HandleName | null {
+    return this.gizmo_.name;
   }
 
   /** How a pointer at `px` of the view sees the scene. */
@@ -109,13 +126,16 @@ export class World3 {
         return at.z < 1 ? { x: ((at.x + 1) / 2) * w, y: ((1 - at.y) / 2) * h } : null;
       },
       body: () => {
-        const robot = ray.intersectObject(this.robot_, true).at(0)?.distance ?? Infinity;
+        const link = ray.intersectObject(this.arm_, true).at(0);
+        const hull = ray.intersectObject(this.robot_, true).at(0)?.distance ?? Infinity;
+        const robot = Math.min(hull, link?.distance ?? Infinity);
         const solids = this.statics_.children.filter((o) => o.userData.obstacle !== undefined);
         const hit = ray.intersectObjects(solids, false).at(0);
         if (hit && hit.distance < robot) {
           const { obstacle: id, ground } = hit.object.userData as { obstacle: number; ground?: boolean };
           return ground ? { kind: "ground", id, at: { x: hit.point.x, y: hit.point.y } } : { kind: "obstacle", id };
         }
+        if (link && link.distance <= hull) return { kind: "link", link: (link.object.userData.link as Link | undefined) ?? "hand" };
         return robot < Infinity ? { kind: "robot" } : null;
       },
     };
@@ -126,7 +146,8 @@ export class World3 {
     cancelAnimationFrame(this.pending_);
     this.observer_.disconnect();
     this.controls_.dispose();
-    for (const group of [this.statics_, this.moving_, this.robot_]) clear(group);
+    this.gizmo_.dispose();
+    for (const group of [this.statics_, this.moving_, this.robot_, this.arm_, this.plan_]) clear(group);
     for (const p of [this.raw_, this.filtered_]) p.geometry.dispose();
     this.renderer_.dispose();
     this.renderer_.domElement.remove();
@@ -158,9 +179,12 @@ export class World3 {
       this.build_statics(scene, options.selection, options.hidden);
       this.place_robot(scene, options.follow);
       this.build_moving(scene, options);
+      this.build_arm(scene, options);
       this.place_points(scene, options.hidden);
       if (this.chases_) this.ride_behind(scene);
       else this.controls_.update();
+      this.camera_.updateMatrixWorld();
+      this.gizmo_.build(this.palette_);
       this.renderer_.render(this.world_, this.camera_);
     });
   }
@@ -186,11 +210,11 @@ export class World3 {
       return;
     }
     const b = scene_bounds(scene);
-    const middle = new THREE.Vector3((b.min_x + b.max_x) / 2, (b.min_y + b.max_y) / 2, 0);
+    const middle = new THREE.Vector3((b.min_x + b.max_x) / 2, (b.min_y + b.max_y) / 2, scene.arm ? kArmHeight : 0);
     // On a phone held upright the view is narrower than high.
     const span = Math.max(3, b.max_x - b.min_x, b.max_y - b.min_y) / Math.min(1, this.camera_.aspect);
     this.controls_.target.copy(middle);
-    this.camera_.position.set(middle.x - 0.3 * span, middle.y - 0.85 * span, 0.85 * span);
+    this.camera_.position.set(middle.x - 0.3 * span, middle.y - 0.85 * span, middle.z + 0.85 * span);
   }
 
   /** Builds grid, obstacles and goal again only when one of them has changed. */
@@ -199,8 +223,7 @@ export class World3 {
     const hills = !hidden.has(kOwn.ground.name);
     const key = [mesh, hills, scene.obstacles, scene.goal?.x, scene.goal?.y, scene.goal?.heading,
       selection?.kind, selection?.kind === "obstacle" ? selection.id : null];
-    if (key.length === this.built_.length && key.every((v, i) => v === this.built_[i])) return;
-    this.built_ = key;
+    if (!changed(this.built_, key)) return;
     clear(this.statics_);
     const p = this.palette_;
     if (mesh) this.statics_.add(grid(p, beside_holes));
@@ -233,7 +256,7 @@ export class World3 {
     if (!f) return;
     for (const o of pressed(f, scene.radius, p)) this.moving_.add(o);
     if (f.truth && on(kOwn.truth) && distance(f.truth.pose, f.pose) > kDrift) {
-      this.moving_.add(outline_of(f.truth.pose, scene, p.muted));
+      this.moving_.add(outline_at(f.truth.pose, scene, p.muted));
     }
     const stage = { group: tilted, palette: p, robot: f.pose, radius: scene.radius, times: options.force_scale };
     const pixel = (2 * Math.tan((this.camera_.fov * Math.PI) / 360)) / Math.max(1, this.box_.clientHeight);
@@ -243,6 +266,20 @@ export class World3 {
       if (layer.name === kWall) tilted.add(...build_wall_words(scene, p, pixel));
     }
     for (const o of build_ways_ahead(scene, p, options.hidden)) tilted.add(o);
+  }
+
+  private build_arm(scene: SceneState, { hidden, desk }: Options): void {
+    clear(this.arm_);
+    if (!scene.arm) {
+      clear(this.plan_);
+      return;
+    }
+    for (const o of build_arm(scene, this.palette_)) this.arm_.add(o);
+    placed_by(this.arm_, this.stand_);
+    for (const o of build_hand_goal(scene, this.palette_, desk?.draft ?? null)) this.moving_.add(o);
+    if (!changed(this.planned_, [scene.arm_plan?.ghost, scene.frame?.arm?.state === "arrived", hidden])) return;
+    clear(this.plan_);
+    for (const o of build_plan(scene, this.palette_, hidden)) this.plan_.add(o);
   }
 
   private build_path(scene: SceneState, width: number, z: number, colour: string, truly: boolean): void {
@@ -279,10 +316,9 @@ export class World3 {
   private place_robot(scene: SceneState, follow: boolean): void {
     const pose = robot_pose(scene);
     if (!pose) return;
-    if (this.robot_.children.length === 0 || this.hull_ !== scene.hull) {
+    if (this.robot_.children.length === 0 || changed(this.hull_, [scene.hull, scene.radius, scene.arm?.base_height])) {
       clear(this.robot_);
       this.robot_.add(...body(scene, this.palette_));
-      this.hull_ = scene.hull;
     }
     const { z, roll, pitch } = tilt_of(scene) ?? { z: 0, roll: 0, pitch: 0 };
     this.robot_.position.set(pose.x, pose.y, z);
@@ -309,6 +345,13 @@ export class World3 {
     set_points(this.filtered_, filtered && !hidden.has(kOwn.filtered.name) ? [filtered] : []);
     for (const points of [this.raw_, this.filtered_]) placed_by(points, this.stand_);
   }
+}
+
+/** Whether `now` differs from what `before` holds; afterwards it holds that. */
+function changed(before: unknown[], now: unknown[]): boolean {
+  if (now.length === before.length && now.every((v, i) => v === before[i])) return false;
+  before.splice(0, before.length, ...now);
+  return true;
 }
 
 function placed_by(object: THREE.Object3D, matrix: THREE.Matrix4): void {

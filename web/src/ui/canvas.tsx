@@ -5,7 +5,7 @@ import { JSX, TargetedPointerEvent } from "preact";
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { use_ui } from "../app";
 import { Palette, read_palette } from "../draw/palette";
-import { Overlay, draw_scene, lacks_ground } from "../draw/scene";
+import { Overlay, draw_scene, lacks_arm, lacks_ground } from "../draw/scene";
 import { Insets, View } from "../draw/view";
 import { Gestures } from "../edit/gestures";
 import type { Eye } from "../edit/inspect";
@@ -98,6 +98,7 @@ export function SceneCanvas(props: CanvasProps): JSX.Element {
       const pointer = overlay.draft.cursor ?? (probe.mouse && view.to_world(probe.mouse.x, probe.mouse.y));
       const colours = palette.current;
       if (lacks_ground(latest.current.scene())) void import("../draw/ground").then(request, () => undefined);
+      if (lacks_arm(latest.current.scene())) void import("../arm/draw").then(request, () => undefined);
       drawing.around(() => draw_scene(g, view, colours, latest.current.scene(), { ...overlay, pointer }));
       tell_view(canvas, view, moving);
       if (moving) request();

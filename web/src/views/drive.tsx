@@ -22,6 +22,7 @@ import { Transport } from "./transport";
 import { ValueBox } from "./value_box";
 import { ViewOnly } from "./watching";
 
+const HandTool = lazy(async () => (await import("../arm/part")).HandTool);
 const SceneThree = lazy(async () => (await import("../three/view")).SceneThree);
 
 /** The state that gestures and keys of the Drive view share: the draft that is drawn, the hover. */
@@ -61,6 +62,7 @@ export function Drive(): JSX.Element {
                 handles: (app.ui.value.session?.robot.editable ?? false) && !app.ui.value.looking,
                 force_scale: app.ui.value.force_scale, hidden: app.ui.value.hidden, ghosts: [], future: app.ui.value.looking,
                 insets: scale_insets(main.current!), preview: app.ui.value.preview?.goal ?? null,
+                hand: app.desk?.draft,
               })} />}
       </main>
       <section class="contents" aria-label="Tools"><Tools /></section>
@@ -118,6 +120,7 @@ export function make_hand(app: App, { tool = () => app.usable_tool, edits = true
       app.redraw();
     },
     changed: () => app.redraw(),
+    arm: () => (app.scene.arm ? app.desk : null),
   });
   return hand;
 }
@@ -139,7 +142,8 @@ function Tools(): JSX.Element {
     <button aria-label="Fit the world into the view" title="Fit (F)" data-testid="fit"
       onClick={() => app.fit_view()}>{icons.fit}</button>
   );
-  if (three) return <div class="tools" role="toolbar" aria-label="Tools">{fit}{layers}{threed}</div>;
+  const hand = drives && session?.robot.arm && <HandTool />;
+  if (three) return <div class="tools" role="toolbar" aria-label="Tools">{hand}{fit}{layers}{threed}</div>;
   const button = (name: Tool, label: string, key: string, can: boolean, on = tool === name, mark: string = name) => can && (
     <button class={on ? "on" : ""} aria-pressed={on}
        aria-label={label} title={`${label} (${key})`} data-testid={`tool-${mark}`}
@@ -152,6 +156,7 @@ function Tools(): JSX.Element {
     <div class="tools" role="toolbar" aria-label="Tools" aria-orientation="vertical">
       {button("pan", "Select: press an object, drag the view or the selected object", "V", true)}
       {button("goal", "Goal: press for the position, drag for the heading", "G", drives)}
+      {hand}
       {button("start", "Start: press for the position, drag for the heading", "S", editable)}
       {button("wall", "Wall: drag from end to end, or press both ends", "W", editable)}
       {button("cylinder", "Cylinder: press for the position, drag for the size", "C", editable)}

@@ -63,7 +63,7 @@ export function use_scene_keys(app: App, hand: Hand): void {
       if (!o || !app.ui.value.session?.robot.editable) return;
       e.preventDefault();
       void app.editor.add(duplicate(o));
-    } else if (e.key in kArrows && !control && !e.altKey && moves_selection(app, e)) {
+    } else if (!control && !e.altKey && (app.desk?.key(e) || (e.key in kArrows && moves_selection(app, e)))) {
       e.preventDefault();
     }
   });
@@ -213,6 +213,7 @@ function remove_selected(app: App): void {
 function place(app: App, at: Point, further: boolean): void {
   const tool = app.usable_tool;
   if (tool === "goal") app.editor.want_goal({ ...at, heading: null }, further || app.ui.value.appending);
+  if (tool === "hand") app.desk?.put(at);
   if (tool === "start" && app.scene.start) app.editor.set_start({ ...at, heading: app.scene.start.heading });
   if (tool === "cylinder" || tool === "box" || is_ground_tool(tool)) void app.editor.add(dragged_obstacle(tool, at, at, false)!);
 }

@@ -4,7 +4,7 @@ import { use_app } from "../app";
 import { corners_of, duplicate, new_wall, remove_edit, speed_of, walk } from "../edit/edits";
 import { degrees, radians, to_parent } from "../geometry";
 import { slope_of } from "../ground";
-import { Obstacle, is_robot, obstacle_title } from "../obstacle";
+import { Obstacle, is_ground, is_robot, obstacle_title } from "../obstacle";
 import { NumberField } from "../ui/controls";
 import { icons } from "../ui/icons";
 import { fixed } from "../words";
@@ -12,6 +12,9 @@ import { Form, tenths, use_typed } from "./value_form";
 
 type Values = Record<string, number>;
 interface FieldInfo { name: string; label: string; unit: string; step?: number; min?: number; digits?: number }
+
+/** Of what an arm passes above or below. */
+const kHeights: FieldInfo[] = ["bottom", "height"].map((name) => ({ name, label: name, unit: "m", step: 0.05, min: 0 }));
 
 const kPlace: FieldInfo[] = [{ name: "x", label: "x", unit: "m" }, { name: "y", label: "y", unit: "m" }];
 const kTurn: FieldInfo = { name: "turn", label: "turn", unit: "°", step: 5 };
@@ -48,14 +51,15 @@ function values_of(o: Obstacle): Values {
   const b = to_parent(o.pose, o.length / 2, 0);
   return {
     x: o.pose.x, y: o.pose.y, turn: tenths(degrees(o.pose.heading)), radius: o.radius, length: o.length,
-    width: o.width, low: o.low, height: o.height, depth: -o.low, x1: a.x, y1: a.y, x2: b.x, y2: b.y, speed: o.path ? speed_of(o.path) : 0,
+    width: o.width, low: o.low, bottom: o.bottom, height: o.height, depth: -o.low, x1: a.x, y1: a.y, x2: b.x, y2: b.y, speed: o.path ? speed_of(o.path) : 0,
   };
 }
 
 /** `o` with the typed values; the others keep all their digits. */
 function with_values(o: Obstacle, v: Values, typed: (name: string) => boolean): Obstacle {
   const out = { ...o, pose: { ...o.pose } };
-  for (const name of ["radius", "length", "width", "low", "height"] as const) if (typed(name)) out[name] = v[name];
+  for (const name of ["radius", "length", "width", "low", "bottom", "height"] as const) if (typed(name)) out[name] = v[name];
+  if (typed("height") && !is_ground(o)) out.extra = { ...o.extra, height: v.height };
   if (o.kind === "step") out.low = out.height;
   if (typed("depth")) out.low = -v.depth;
   if (o.kind === "wall") {
@@ -85,7 +89,7 @@ export function ObstacleValues(props: { obstacle: Obstacle; editable: boolean })
   const o = props.obstacle;
   const now = values_of(o);
   const [v, type, forget, changed] = use_typed(now,
-    [o.path ? 0 : o.pose.x, o.path ? 0 : o.pose.y, o.pose.heading, o.radius, o.length, o.width, o.low, o.height]);
+    [o.path ? 0 : o.pose.x, o.path ? 0 : o.pose.y, o.pose.heading, o.radius, o.length, o.width, o.low, o.bottom, o.height]);
   const apply = () => {
     if (o.path && !(v.speed > 0)) return app.toast("warn", "A speed must be above 0.");
     const to = with_values(o, v, (name) => v[name] !== now[name]);
@@ -96,7 +100,7 @@ export function ObstacleValues(props: { obstacle: Obstacle; editable: boolean })
     <Form label={obstacle_title(o)} name="obstacle-values" on_submit={apply}>
       <b>{obstacle_title(o)}</b>
       <span class="quiet num">{measure_of(o)}</span>
-      {fields_of(o).map((f) => (
+      {[...fields_of(o), ...(app.scene.arm && !is_ground(o) ? kHeights : [])].map((f) => (
         <NumberField key={f.name} label={f.label} unit={f.unit} name={`obstacle-${f.name}`} value={v[f.name]}
           step={f.step} min={f.min} digits={f.digits} on_change={(value) => type({ [f.name]: value ?? now[f.name] })} />
       ))}

@@ -24,6 +24,7 @@ const Signals = lazy(async () => {
   };
 });
 const Terrain = lazy(async () => (await import("./terrain")).Terrain);
+const ArmTab = lazy(async () => (await import("../arm/part")).ArmTab);
 const World = lazy(async () => (await import("./world")).World);
 
 export function Figures(): JSX.Element {
@@ -61,6 +62,7 @@ function Stat(props: { of: Figure; value: number | null | undefined; beyond?: bo
   );
 }
 
+const Arm: Tab = { name: "arm", label: "Arm", body: () => <ArmTab /> };
 /** The tabs of the panel, in their order; another one is one more entry. */
 const kTabs: Tab[] = [
   { name: "robot", label: "Robot", body: () => <Robot /> },
@@ -71,8 +73,8 @@ const kTabs: Tab[] = [
 /** The panel below the figures; on a phone it is a sheet. */
 export function Tuning(): JSX.Element {
   const app = use_app();
-  const { tab } = use_ui("tab");
-  return <Tabs label="Panel" tabs={kTabs} shown={tab} on_pick={(tab) => app.ui.set({ tab })} />;
+  const { tab, session } = use_ui("tab", "session");
+  return <Tabs label="Panel" tabs={session?.robot.arm ? [Arm, ...kTabs] : kTabs} shown={tab} on_pick={(tab) => app.ui.set({ tab })} />;
 }
 
 /** The plots share their cursor with the scene. */
