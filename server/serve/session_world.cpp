@@ -5,6 +5,16 @@
 #include "sim/obstacle_set.hpp"
 
 namespace server {
+namespace {
+
+/// True if the goals of base and arm are those of `scenario`.
+bool has_goals_of(const SessionState& state, const sim::Scenario& scenario) {
+  if (state.hand_goal != scenario.hand_goal) return false;
+  if (scenario.carry) return state.carry_goal == scenario.goal && state.route == algo::SetGoals{};
+  return !state.carry_goal && state.route == route_of(scenario);
+}
+
+}  // namespace
 
 sim::Scenario Session::as_scenario() const {
   sim::Scenario out = state_.spec.scenario;
@@ -60,11 +70,7 @@ void Session::note_goals() {
 }
 
 void Session::note_edits() {
-  const std::optional<algo::SetGoal> carried = saved_.carry ? saved_.goal : std::nullopt;
-  const algo::SetGoals route = saved_.carry ? algo::SetGoals{} : route_of(saved_);
-  const bool other_goals =
-      state_.route != route || state_.hand_goal != saved_.hand_goal || state_.carry_goal != carried;
-  state_.edited = state_.spec.scenario.start != saved_.start || other_goals ||
+  state_.edited = state_.spec.scenario.start != saved_.start || !has_goals_of(state_, saved_) ||
                   state_.asked.obstacles != saved_.obstacles;
 }
 
