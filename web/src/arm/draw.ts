@@ -17,6 +17,7 @@ const kLeast = 5;       // [px] of a link's width
 const kEdge = 1.5;      // [px] of its outline
 const kShownPlaces = 9; // of a plan
 const kArrow = 26;      // [px] of the hand's direction, where it is level
+const kApart = 60;      // [px] between goals whose heights can both be read
 
 const flat = ([x, y]: Vec3) => ({ x, y });
 
@@ -78,10 +79,19 @@ function draw_arm(g: Context, view: View, palette: Palette, scene: SceneState, o
   const chosen = overlay.selection?.kind === "hand";
   if (goal) draw_hand_goal(g, view, palette, scene, goal, chosen && !draft, false);
   if (draft) draw_hand_goal(g, view, palette, scene, draft, true, true);
+  if (goal && !(draft && view.scale * Math.hypot(draft.x - goal.x, draft.y - goal.y) < kApart)) write_height(g, view, palette, goal);
+  if (draft) write_height(g, view, palette, draft);
   g.restore();
 }
 
-/** The hand at its goal, the direction in which it points, and the height, which the view from above cannot show. */
+const ring_of = (view: View) => Math.max(9, 0.06 * view.scale);
+
+/** The height of a goal of the hand, which the view from above cannot show. */
+function write_height(g: Context, view: View, palette: Palette, { x, y, z }: HandGoalJson): void {
+  write(g, `z ${z.toFixed(2)} m`, view.sx(x), view.sy(y) - ring_of(view) - 9, palette.ok, `600 12px ${palette.font}`);
+}
+
+/** The hand at its goal, and the direction in which it points. */
 function draw_hand_goal(g: Context, view: View, palette: Palette, scene: SceneState, goal: HandGoalJson, chosen: boolean, draft: boolean): void {
   const { arm } = scene;
   if (!arm) return;
@@ -91,13 +101,12 @@ function draw_hand_goal(g: Context, view: View, palette: Palette, scene: SceneSt
   g.globalAlpha = 0.35;
   bar(g, view, { name: "hand", from: wrist_of(goal, arm.hand), to: at, radius: arm.link_radius }, palette.ok, palette.bg);
   g.globalAlpha = 1;
-  circle(g, view, goal, Math.max(9, 0.06 * view.scale));
+  circle(g, view, goal, ring_of(view));
   stroke(g, palette.ok, chosen ? 3.5 : 2.5, dash);
   circle(g, view, goal, 2.5);
   fill(g, palette.ok);
   const size = Math.max(kArrow / view.scale, arm.hand);
   arrow(g, view, goal, { x: ahead[0] * size, y: ahead[1] * size }, 1, palette.ok, 2.4, dash);
-  write(g, `z ${goal.z.toFixed(2)} m`, view.sx(goal.x), view.sy(goal.y) - Math.max(9, 0.06 * view.scale) - 9, palette.ok, `600 12px ${palette.font}`);
   const then = goal_from_json(goal.then);
   if (then) draw_goal(g, view, palette, then, false, true);
 }
