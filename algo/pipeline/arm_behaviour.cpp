@@ -233,7 +233,9 @@ std::optional<ArmBehaviour::Drive> ArmBehaviour::turn(const Resource& in) {
 
 Command ArmBehaviour::guarded(const Resource& in, const Command& command) const {
   if (!now_) return command;  // the gate holds it
-  return guard_.limited(*now_, in.odometry.twist, near_, command);
+  const ArmJoints rates = joints_of(in.observation->joints->rate);
+  if (!rates.allFinite()) return command;  // the gate holds it
+  return guard_.limited(*now_, {in.odometry.twist, rates}, near_, command);
 }
 
 std::optional<Mission> ArmBehaviour::mission() const {
