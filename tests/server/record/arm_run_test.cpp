@@ -68,6 +68,7 @@ TEST(ArmFrame, AnArmComesBackFromItsFrameAndNoneCostsNothing) {
   t.ground_truth.emplace().touched = algo::BodyLink::Forearm;
   algo::SetHandGoal goal{.position_W = {1.0 / 3, 2, 3},
                          .attitude_W = {0.5, 0.5, 0.5, 0.5},
+                         .path_W = {{1, 2, 1.0 / 3}, {4, 5, 6}},
                          .arm_angle = 0.7,
                          .base_stays = true,
                          .then = algo::SetGoal{{1, 2}, 0.3}};
