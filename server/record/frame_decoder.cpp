@@ -369,6 +369,7 @@ void read_output(const fb::Frame& f, algo::Telemetry& t) {
   t.output.state = f.decision()->state();
   t.output.answered = f.answer() != nullptr;
   if (t.output.answered) t.output.twist = from_wire(*f.answer());
+  if (f.answer_joints() != nullptr) t.output.joint_rates = read_joints(f.answer_joints());
   t.layers.clear();
   const fb::News* news = f.news();
   t.words_fresh = news != nullptr && news->what() != nullptr && news->why() != nullptr;

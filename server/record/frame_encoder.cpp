@@ -411,6 +411,8 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   const auto line = write_line(b, o.line);
   const auto rates =
       t.command.joints == 0 ? 0 : b.CreateVector(t.command.joint_rates.data(), t.command.joints);
+  const auto& turns = t.output.joint_rates;
+  const auto answer = t.output.answered && turns ? write_joints(b, *turns) : 0;
   const auto hold = write_name(b, t.hold.name);
   const auto limit = write_name(b, t.limit.name);
   const auto behaviour = t.behaviour == algo::behaviours::kAvoid ? 0 : write_name(b, t.behaviour);
@@ -440,6 +442,7 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   frame.add_channels(channels);
   frame.add_line(line);
   frame.add_joint_rates(rates);
+  frame.add_answer_joints(answer);
   frame.add_joints(reading);
   frame.add_arm(arm);
   frame.add_goals_ahead(goals_ahead);
