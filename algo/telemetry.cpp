@@ -74,6 +74,7 @@ std::optional<double> ControlOutput::measure(std::string_view name) const {
 
 void ControlOutput::clear() {
   twist = {};
+  joint_rates.reset();
   pass_W.reset();
   waits = false;
   state = 0;

@@ -54,10 +54,11 @@ struct Measure {
 /// A controller's decision, and the drawings and measures that explain it.
 struct ControlOutput {
   Twist2 twist{};
-  std::optional<Vec2> pass_W{};  // the point the base drives to
-  bool waits = false;            // it may stand still now; its words give the reason
-  std::uint8_t state = 0;        // the controller's own; a change prompts new words at once
-  bool answered = false;         // from outside the program: the record keeps the twist as an input
+  std::optional<JointValues> joint_rates{};  // [rad/s] of the arm; absent: it rests
+  std::optional<Vec2> pass_W{};              // the point the base drives to
+  bool waits = false;                        // it may stand still now; its words give the reason
+  std::uint8_t state = 0;  // the controller's own; a change prompts new words at once
+  bool answered = false;   // from outside the program: the record keeps both as inputs
   Recycled<Measure> measures{};
   Recycled<Layer> layers{};
 

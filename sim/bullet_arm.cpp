@@ -13,6 +13,7 @@ namespace sim {
 namespace {
 
 constexpr double kStiffness = 0.3;      // of the motors' position, per step
+constexpr double kGetsBack = 10;        // [rad/s2] at which a motor plans to brake on its way back
 constexpr double kStandsFast = 1e-3;    // [rad, rad/s]
 constexpr double kLeastInertia = 1e-4;  // [kg m2] a link without length has one too
 constexpr double kTouching = 1e-4;      // [m]
@@ -37,6 +38,14 @@ btVector3 rod_inertia(double mass, double length, double radius, const btVector3
     inertia[k] = std::max(kLeastInertia, part * about + (1 - part) * across);
   }
   return inertia;
+}
+
+/// [rad/s] to get rid of a position's `error` [rad] in steps of `dt` [s]. No faster than a motor
+/// can brake before it is there: a motor whose torque is at its limit would swing past, farther
+/// each time.
+double correction(double error, double dt) {
+  const double most = std::sqrt(2 * kGetsBack * std::abs(error));
+  return std::clamp(kStiffness * error / dt, -most, most);
 }
 
 btMultiBodyDynamicsWorld& multibody_world(Physics& physics) {
@@ -160,8 +169,8 @@ void BulletArm::prepare(const btRigidBody& chassis, const algo::JointValues& rat
   const algo::JointValues turned = within_limits(rates, target_, arm_, dt);
   for (std::size_t i = 0; i < motors_.size(); ++i) {
     target_[i] += turned[i] * dt;
-    motors_[i]->setPositionTarget(target_[i], kStiffness);
-    motors_[i]->setVelocityTarget(turned[i], 1);
+    const double error = target_[i] - body_->getJointPos(static_cast<int>(i));
+    motors_[i]->setVelocityTarget(turned[i] + correction(error, dt), 1);
     motors_[i]->setMaxAppliedImpulse(arm_.torques[i] * dt);  // the limit is an impulse
   }
 }

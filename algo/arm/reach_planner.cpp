@@ -1,6 +1,8 @@
 #include "algo/arm/reach_planner.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
 
 #include "algo/arm/arm_inverse.hpp"
@@ -16,21 +18,41 @@ constexpr double kCheap = 0.6;        // [m] of room beyond which a cell costs n
 constexpr double kLeaves = 1e-3;      // [m] the way from the start may come nearer by this
 constexpr double kDear = 3;           // that a cell without room costs more than one with it
 
+constexpr double kBeside = 3;        // [m] of ground searched beyond start and goal
+constexpr double kMostCells = 800;   // along a side of the grid: beyond, its cells grow
+constexpr int kCellsBeside = 2;      // of a goal whose own cell has too little room
+constexpr double kLeastRoom = 0.05;  // [m] that a base leaves which stands too near to something
+
+/// True if the folded body has room all the way from `a` to `b`.
+bool is_open(const FoldedBody& folded,
+             const Vec2& a,
+             const Vec2& b,
+             std::span<const Solid> solids,
+             const ReachRules& rules) {
+  const int parts = std::max(1, static_cast<int>(std::ceil((b - a).norm() / (rules.cell / 2))));
+  for (int k = 0; k <= parts; ++k) {
+    if (folded.room(a + (b - a) * k / parts, solids) < rules.base_margin) return false;
+  }
+  return true;
+}
+
 /// The folded base's grid about start and goal.
 class BaseGrid {
  public:
   BaseGrid(const MobileArm& body,
-           const Vec2& middle,
+           const Vec2& from,
+           const Vec2& to,
            std::span<const Solid> solids,
            const ReachRules& rules)
-      : cells_(static_cast<int>(std::ceil(2 * rules.room / rules.cell))),
-        cell_(rules.cell),
-        corner_(middle - Vec2::Constant(rules.room)) {
-    const FoldedBody folded(body);
+      : folded_(body), solids_(solids), rules_(rules) {
+    const double half = std::max(rules.room, (to - from).norm() / 2 + kBeside);
+    cell_ = std::max(rules.cell, 2 * half / kMostCells);
+    cells_ = static_cast<int>(std::ceil(2 * half / cell_));
+    corner_ = (from + to) / 2 - Vec2::Constant(half);
     costs_.reserve(static_cast<std::size_t>(cells_) * static_cast<std::size_t>(cells_));
     for (int row = 0; row < cells_; ++row) {
       for (int column = 0; column < cells_; ++column) {
-        const double room = folded.room(centre({column, row}), solids);
+        const double room = folded_.room(centre({column, row}), solids);
         const double tight = std::clamp(1 - room / kCheap, 0.0, 1.0);
         costs_.push_back(room < rules.base_margin ? CostGrid::kBlocked
                                                   : static_cast<float>(1 + kDear * tight));
@@ -42,10 +64,10 @@ class BaseGrid {
   /// Points from `from` to `to`, both included; none if there is no way.
   std::optional<std::vector<Vec2>> way(const Vec2& from, const Vec2& to) {
     const CostGrid grid{cells_, cells_, costs_};
-    const GridCell goal = cell_of(to);
-    if (grid.blocked(goal)) return std::nullopt;
-    if (!search_.find(grid, cell_of(from), goal)) {
-      costs_[grid.index(goal)] = CostGrid::kBlocked;  // many places share a cell: ask for it once
+    const std::optional<GridCell> goal = cell_beside(grid, to);
+    if (!goal) return std::nullopt;
+    if (!search_.find(grid, cell_of(from), *goal)) {
+      costs_[grid.index(*goal)] = CostGrid::kBlocked;  // many places share a cell: ask for it once
       return std::nullopt;
     }
     std::vector<Vec2> points{from};
@@ -60,10 +82,31 @@ class BaseGrid {
     const Vec2 at = (p - corner_) / cell_;
     return {static_cast<int>(std::floor(at.x())), static_cast<int>(std::floor(at.y()))};
   }
+  /// The cell of `p`, or the nearest from which the straight way to it is free.
+  std::optional<GridCell> cell_beside(const CostGrid& grid, const Vec2& p) const {
+    const GridCell own = cell_of(p);
+    if (!grid.blocked(own)) return own;
+    std::optional<GridCell> best;
+    double least = std::numeric_limits<double>::infinity();
+    for (int row = own.row - kCellsBeside; row <= own.row + kCellsBeside; ++row) {
+      for (int column = own.column - kCellsBeside; column <= own.column + kCellsBeside; ++column) {
+        const GridCell cell{column, row};
+        const double away = (centre(cell) - p).norm();
+        if (away >= least || grid.blocked(cell)) continue;
+        if (!is_open(folded_, centre(cell), p, solids_, rules_)) continue;
+        best = cell;
+        least = away;
+      }
+    }
+    return best;
+  }
 
-  int cells_;
-  double cell_;
-  Vec2 corner_;
+  FoldedBody folded_;
+  std::span<const Solid> solids_;
+  ReachRules rules_;
+  int cells_ = 0;
+  double cell_ = 0;
+  Vec2 corner_ = Vec2::Zero();
   std::vector<float> costs_{};
   GridSearch search_{};
 };
@@ -74,19 +117,11 @@ std::vector<Vec2> straightened(const MobileArm& body,
                                std::span<const Solid> solids,
                                const ReachRules& rules) {
   const FoldedBody folded(body);
-  const auto open = [&](const Vec2& a, const Vec2& b) {
-    const int parts = std::max(1, static_cast<int>(std::ceil((b - a).norm() / (rules.cell / 2))));
-    for (int k = 0; k <= parts; ++k) {
-      const Vec2 p = a + (b - a) * k / parts;
-      if (folded.room(p, solids) < rules.base_margin) return false;
-    }
-    return true;
-  };
   std::vector<Vec2> out{points.front()};
   for (std::size_t i = 0; i + 1 < points.size();) {
     std::size_t far = i + 1;
     for (std::size_t k = points.size() - 1; k > i + 1; --k) {
-      if (open(points[i], points[k])) {
+      if (is_open(folded, points[i], points[k], solids, rules)) {
         far = k;
         break;
       }
@@ -175,6 +210,16 @@ ArmPlanRules leaving(const MobileArm& body,
   return nearer;
 }
 
+/// The same of the base on its way.
+ReachRules base_leaving(const MobileArm& body,
+                        const Vec2& from,
+                        std::span<const Solid> solids,
+                        ReachRules rules) {
+  const double room = FoldedBody(body).room(from, solids) - kLeaves;
+  rules.base_margin = std::min(rules.base_margin, std::max(room, kLeastRoom));
+  return rules;
+}
+
 ReachPlan no_plan(std::string why) {
   ReachPlan plan;
   plan.why = std::move(why);
@@ -228,7 +273,8 @@ ReachPlan plan_reach(const MobileArm& body,
   if (places.empty()) {
     return no_plan("From no place of the base does the hand reach its goal clear of everything.");
   }
-  BaseGrid grid(body, (from + hand_W.translation().head<2>()) / 2, solids, rules);
+  const ReachRules driving = base_leaving(body, from, solids, rules);
+  BaseGrid grid(body, from, hand_W.translation().head<2>(), solids, driving);
   int tried = 0;
   std::ranges::rotate(places,
                       places.begin() + static_cast<std::ptrdiff_t>(rules.skip % places.size()));
@@ -240,7 +286,7 @@ ReachPlan plan_reach(const MobileArm& body,
     const auto reach = plan_arm(body, place.base_W, body.folded, place.q, solids, seed, rules.arm);
     if (!reach) continue;
     return {.legs = legs_of(
-                start, *fold, straightened(body, *way, solids, rules), place, *reach, rules)};
+                start, *fold, straightened(body, *way, solids, driving), place, *reach, rules)};
   }
   return no_plan(tried > 0
                      ? "The arm finds no way between the obstacles to its goal."
@@ -276,12 +322,13 @@ ReachPlan plan_return(const MobileArm& body,
       plan_arm(body, base_of(start), arm_of(start), body.folded, solids, seed, nearer);
   if (!fold) return no_plan("The arm finds no way to fold itself where the base stands.");
   const Vec2 from = start.head<2>();
-  BaseGrid grid(body, (from + goal.position_W) / 2, solids, rules);
+  const ReachRules driving = base_leaving(body, from, solids, rules);
+  BaseGrid grid(body, from, goal.position_W, solids, driving);
   const auto way = grid.way(from, goal.position_W);
   if (!way) return no_plan("The base finds no way to its goal.");
   Legs legs(start);
   legs.arm(*fold, rules.arm.stride);
-  for (const Vec2& corner : straightened(body, *way, solids, rules)) {
+  for (const Vec2& corner : straightened(body, *way, solids, driving)) {
     legs.drive(corner, rules.spacing);
   }
   if (goal.heading) legs.turn(*goal.heading);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kArmLook = 0.05;     // [s] between two looks at the motion
 constexpr double kArmActs = 2;        // periods until another command can take its place
-constexpr double kJointStops = 0.05;  // [s] of a joint's motion after its rate is zero
+constexpr double kJointStops = 0.05;  // [s] in which a joint takes on another rate
 constexpr double kEqualRoom = 1e-6;   // [m]
 constexpr int kMostLooks = 100;
 
@@ -48,15 +48,16 @@ double ArmGuard::room(const BodyJoints& q, std::span<const Solid> near, double t
 }
 
 /// [m] No point of the body moves farther until it stands.
-double ArmGuard::farthest(const Twist2& twist,
+double ArmGuard::farthest(const Motion& motion,
                           std::span<const Solid> near,
                           const Command& command) const {
   const double acts = kArmActs * period_ + kArmLook;
-  const double v = std::max(std::abs(twist.v), std::abs(command.base.v));
-  const double w = std::max(std::abs(twist.omega), std::abs(command.base.omega));
+  const double v = std::max(std::abs(motion.base.v), std::abs(command.base.v));
+  const double w = std::max(std::abs(motion.base.omega), std::abs(command.base.omega));
   const double way = v * acts + v * v / (2 * limits_.acceleration);
   const double turn = w * acts + w * w / (2 * limits_.angular_acceleration);
-  const double joints = rates_of(command).cwiseAbs().sum() * (acts + kJointStops);
+  const double joints = rates_of(command).cwiseAbs().sum() * (acts + kJointStops) +
+                        motion.rates.cwiseAbs().sum() * kJointStops;
   double fastest = 0;  // [m/s] of a thing
   for (const Solid& solid : near) fastest = std::max(fastest, solid.velocity_W.norm());
   const double stands = acts + std::max(v / limits_.acceleration, w / limits_.angular_acceleration);
@@ -64,12 +65,13 @@ double ArmGuard::farthest(const Twist2& twist,
 }
 
 double ArmGuard::least_room(const BodyJoints& now,
-                            const Twist2& twist,
+                            const Motion& motion,
                             std::span<const Solid> near,
                             const Command& command) const {
   const ArmJoints rates = rates_of(command);
-  MotionState state{base_of(now), twist};
-  ArmJoints q = arm_of(now);
+  MotionState state{base_of(now), motion.base};
+  ArmJoints q =
+      arm_of(now) + kJointStops / 2 * (motion.rates - rates);  // they do not change at once
   double least = std::numeric_limits<double>::infinity();
   const double acts = kArmActs * period_;
   const auto look = [&](double time) {
@@ -93,12 +95,12 @@ double ArmGuard::least_room(const BodyJoints& now,
 }
 
 Command ArmGuard::limited(const BodyJoints& now,
-                          const Twist2& twist,
+                          const Motion& motion,
                           std::span<const Solid> near,
                           const Command& command) const {
   const bool moves = command.base != Twist2{} || !rates_of(command).isZero();
   if (!moves) return command;
-  if (room(now, near, 0) > farthest(twist, near, command)) return command;
+  if (room(now, near, 0) > farthest(motion, near, command)) return command;
   Command arm_alone = command;
   arm_alone.base = {};
   Command base_alone = command;
@@ -109,7 +111,7 @@ Command ArmGuard::limited(const BodyJoints& now,
   const Command* best = nullptr;
   double most = 0;
   for (const Command& candidate : candidates) {
-    const double left = least_room(now, twist, near, candidate);
+    const double left = least_room(now, motion, near, candidate);
     if (left >= 0) return candidate;
     if (best != nullptr && left <= most + kEqualRoom) continue;
     best = &candidate;

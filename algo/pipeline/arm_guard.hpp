@@ -27,9 +27,14 @@ class ArmGuard {
 
   explicit ArmGuard(const RobotSpec& spec);
 
-  /// `command` or a part of it, for a body at `now` whose base drives at `twist`, among `near`.
+  /// How a body moves now.
+  struct Motion {
+    Twist2 base{};
+    ArmJoints rates = ArmJoints::Zero();  // [rad/s]
+  };
+  /// `command` or a part of it, for a body at `now`, among `near`.
   Command limited(const BodyJoints& now,
-                  const Twist2& twist,
+                  const Motion& motion,
                   std::span<const Solid> near,
                   const Command& command) const;
   /// [m] How far from R a motion of the guard can reach.
@@ -37,11 +42,11 @@ class ArmGuard {
 
  private:
   double least_room(const BodyJoints& now,
-                    const Twist2& twist,
+                    const Motion& motion,
                     std::span<const Solid> near,
                     const Command& command) const;
   double room(const BodyJoints& q, std::span<const Solid> near, double time) const;
-  double farthest(const Twist2& twist, std::span<const Solid> near, const Command& command) const;
+  double farthest(const Motion& motion, std::span<const Solid> near, const Command& command) const;
 
   MobileArm body_;
   MotionLimits limits_;

@@ -31,7 +31,11 @@ Proposal AvoidBehaviour::propose(const Resource& in, ControlOutput& output) {
   ControlInput input = static_cast<const ControlInput&>(in);
   if (in.mission == Mission::Arrived) input.goal.reset();
   controller_->update(input, *in.parameters, output);
-  return {.active = input.goal.has_value(), .twist = output.twist, .limits = {}, .limit = {}};
+  return {.active = input.goal.has_value(),
+          .twist = output.twist,
+          .limits = {},
+          .limit = {},
+          .rates = output.joint_rates};
 }
 
 Twist2 AvoidBehaviour::follow(const Resource& in, const SetGoal& pulled, ControlOutput& output) {

@@ -47,13 +47,15 @@ void ElasticStripController::reset(const Pose2& /*start_W*/) {
   side_.reset();
   goal_.reset();
   kept_via_W_.reset();
+  buffer_.clear();
 }
 
-/// Side and kept via belong to one goal: another goal has another line to it.
-void ElasticStripController::follow_goal(const SetGoal& goal) {
+/// Side, kept via and buffer belong to one goal: another goal has another line to it.
+void ElasticStripController::follow_goal(const SetGoal& goal, const Vec2& start_W) {
   if (goal_ && goal_->position_W == goal.position_W) return;
   side_.reset();
   kept_via_W_.reset();
+  buffer_.reset(start_W, goal.position_W);
   goal_ = goal;
 }
 
@@ -112,8 +114,8 @@ void ElasticStripController::update(const ControlInput& in,
     return;
   }
   const SetGoal& goal = *in.goal;
-  follow_goal(goal);
   const Pose2& pose = in.odometry.pose;
+  follow_goal(goal, pose.position());
   const double reach = parameters[kSafetyDistance] + in.spec->radius;
   const ForceSettings settings{
       reading_.law, reach, parameters[kRepulsionGain], parameters[kStripStep]};
@@ -128,11 +130,25 @@ void ElasticStripController::update(const ControlInput& in,
   kept_via_W_ = pass_W;
   out.pass_W = pass_W;
   show(strip, pass_W, goal.position_W, out);
+  const Vec2 next_W = next_point(pose.position(), pass_W, parameters);
 
   const double to_goal = (goal.position_W - pose.position()).norm();
   if (!free_to_move) return;
   out.twist = to_goal < parameters[algo::kGoalReach] ? turn_to(pose, goal, parameters)
-                                                     : drive_to(pose, pass_W, parameters);
+                                                     : drive_to(pose, next_W, parameters);
+}
+
+/// The pass point, or as the sibling thesis has it, the next point of its buffer.
+Vec2 ElasticStripController::next_point(const Vec2& p_W,
+                                        const Vec2& pass_W,
+                                        const Parameters& parameters) {
+  if (parameters[kViaBuffer] == 0) return pass_W;
+  const auto rule = parameters[kViaBuffer] == 1 ? IsSortRule::Corrected : IsSortRule::Literal;
+  buffer_.advance(p_W);
+  const bool pushed = !forces_.left_W.isZero(0) || !forces_.right_W.isZero(0);
+  if (pushed) buffer_.insert(pass_W, rule);
+  const std::optional<Via> next = buffer_.get_position(buffer_.cursor() + 1);
+  return next ? next->position_W : pass_W;
 }
 
 void ElasticStripController::show(const Strip& strip,

@@ -8,6 +8,7 @@
 #include "algo/driving.hpp"
 #include "algo/strip/side_choice.hpp"
 #include "algo/strip/strip.hpp"
+#include "algo/strip/via_buffer.hpp"
 
 namespace algo {
 
@@ -53,10 +54,11 @@ class ElasticStripController final : public Controller {
  private:
   struct Strip;  // start, via and end of one tick
 
-  void follow_goal(const SetGoal& goal);
+  void follow_goal(const SetGoal& goal, const Vec2& start_W);
   Strip lay_strip(const Vec2& start_W, const Vec2& goal_W, const Parameters& parameters) const;
   bool push(const ControlInput& in, const ForceSettings& settings);
   void choose(const ControlInput& in, const Vec2& goal_W, double reach);
+  Vec2 next_point(const Vec2& p_W, const Vec2& pass_W, const Parameters& parameters);
   void show(const Strip& strip, const Vec2& pass_W, const Vec2& goal_W, ControlOutput& out) const;
 
   StripReading reading_{};
@@ -64,6 +66,7 @@ class ElasticStripController final : public Controller {
   SideChoice side_{};
   std::optional<SetGoal> goal_{};     // of the previous tick
   std::optional<Vec2> kept_via_W_{};  // pass point of the previous tick
+  ViaBuffer buffer_{};                // from where the goal was set
 };
 
 }  // namespace algo

@@ -46,11 +46,25 @@ inline constexpr ParameterInfo kStripStep{
         "safety distance, or the goal's pull can win over an obstacle's push.",
     .alias = "strip_step"};
 
+inline constexpr ParameterInfo kViaBuffer{
+    .name = "strip.via_buffer",
+    .label = "Drive by the via buffer",
+    .unit = "",
+    .min = 0,
+    .max = 2,
+    .step = 1,
+    .initial = 0,
+    .help =
+        "The sibling thesis' sequencing: the robot drives to the next of stored via points, and a "
+        "new one is taken 0.5 m from the last reached. 1: in x or y, 2: in x and y, as printed. "
+        "It collides: for comparison only. 0: to the pass point of each tick."};
+
 /// The parameters of the three-point strips. K_c has no effect on one that does not keep its via
 /// point (equations.md D).
 inline constexpr auto kStripParameters = std::to_array<const ParameterInfo*>({&kRepulsionGain,
                                                                               &kSafetyDistance,
                                                                               &kStripStep,
+                                                                              &kViaBuffer,
                                                                               &kMaxSpeed,
                                                                               &kMaxTurnRate,
                                                                               &kHeadingGain,
@@ -59,6 +73,8 @@ inline constexpr auto kKeptViaParameters = std::to_array<const ParameterInfo*>({
                                                                                 &kContractionGain,
                                                                                 &kSafetyDistance,
                                                                                 &kStripStep,
+                                                                                &kViaBuffer,
+                                                                                &kViaBuffer,
                                                                                 &kMaxSpeed,
                                                                                 &kMaxTurnRate,
                                                                                 &kHeadingGain,

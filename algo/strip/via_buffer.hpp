@@ -1,9 +1,8 @@
-// algo/strip/via_buffer.hpp: the list of via points of the sibling thesis (Fig. 25-27), for the
-// record and the page.
+// algo/strip/via_buffer.hpp: the list of via points of the sibling thesis (Fig. 25-27), by which
+// its sequencing layer drives.
 //
-// For display only; it must never steer. While a via is refused the robot would drive to the stale
-// one, and seven of nine canonical layouts end in a collision (equations.md D). The controller
-// drives to the direct pass point on every tick.
+// For comparison: while a via is refused the robot drives to the stale one and into things
+// (equations.md D). The controllers drive to the direct pass point unless kViaBuffer is set.
 #pragma once
 
 #include <cstddef>

@@ -37,7 +37,8 @@ class Run:
     """The run that begins.
 
     scenario: its name. seed: of the sensor noise; use it for your own randomness too.
-    start: (x, y, heading) [m, m, rad] in W. robot: a dict of the fields of table Robot.
+    start: (x, y, heading) [m, m, rad] in W. robot: a dict of the fields of table Robot; "arm" is
+    None, or a dict of those of table Arm.
     """
 
     def __init__(self, table):
@@ -50,7 +51,19 @@ class Run:
         self.robot = {name: robot.number(slot, "<d", 0.0) for slot, name in enumerate(names, 1)}
         self.robot["name"] = robot.text(0)
         self.robot["has_laser"] = bool(robot.number(11, "<B", 0))
+        self.robot["arm"] = _arm(robot.table(12))
         self.parameter_names = table.texts(4)
+
+
+def _arm(table):
+    if table is None:
+        return None
+    arm = dict(zip(("x", "y", "z", "heading"), table.struct(0, struct.Struct("<4d"))))
+    for slot, name in enumerate(("upper_arm", "elbow_offset", "forearm", "hand"), 1):
+        arm[name] = table.number(slot, "<d", 0.0)
+    for slot, name in enumerate(("limits", "rates", "rest"), 5):
+        arm[name] = list(table.vector(slot, 8, "d"))
+    return arm
 
 
 class Seen:
@@ -95,18 +108,30 @@ class Seen:
     def infrared(self):
         return self._table.structs(7, _READING)
 
+    @property
+    def joints(self):
+        """[rad] as measured, the shoulder's first; empty without an arm."""
+        return self._table.vector(8, 8, "d")
+
+    @property
+    def joint_rates(self):
+        """[rad/s]"""
+        return self._table.vector(9, 8, "d")
+
 
 class Answer:
     """A command with its explanation and drawings. update() may return this or (v, omega).
 
     waits: the robot may stand still now. state: 0 to 255; a change shows new words at once.
-    what, why: one sentence each, of at most 500 bytes.
+    what, why: one sentence each, of at most 500 bytes. joint_rates: [rad/s] of an arm's seven joints;
+    None: the arm rests.
     """
 
-    def __init__(self, v, omega, what="", why="", waits=False, state=0):
+    def __init__(self, v, omega, what="", why="", waits=False, state=0, joint_rates=None):
         self.v, self.omega = v, omega
         self.what, self.why = what, why
         self.waits, self.state = waits, state
+        self.joint_rates = joint_rates
         self.layers = []
         self.measures = []
 
@@ -236,6 +261,12 @@ class _Writer:
     def floats(self, values):
         return lambda: self.bytes(struct.pack("<%df" % len(values), *values), count=len(values))
 
+    def doubles(self, values):
+        def write():
+            self.data += bytes((4 - len(self.data)) % 8)  # the count ends where the numbers begin
+            return self.bytes(struct.pack("<%dd" % len(values), *values), count=len(values))
+        return write
+
     def tables(self, all_fields):
         def write():
             at = self.bytes(bytes(4 * len(all_fields)), count=len(all_fields))
@@ -281,6 +312,8 @@ def _command(tick, answer):
     if answer.measures:
         fields[7] = writer.tables([{0: writer.text(name), 1: writer.text(unit),
                                     2: ("<d", value)} for name, value, unit in answer.measures])
+    if answer.joint_rates is not None:
+        fields[9] = writer.doubles(answer.joint_rates)
     return writer.finish(_COMMAND, fields)
 
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "server/run/arm_json.hpp"
 #include "server/run/json_reader.hpp"
 #include "server/run/paths.hpp"
 #include "server/run/robot_json.hpp"
@@ -25,6 +26,17 @@ void RunFlags::add_to(Command command) {
   add_set_option(command, settings);
 }
 
+void RunFlags::add_arm_to(Command command) {
+  command
+      .add_option("--hand-goal",
+                  hand_goal,
+                  "Goal of the hand [m] in place of the scenario's goals, for a robot with an arm; "
+                  "without a quaternion the hand points up")
+      .type_name("X,Y,Z[,QX,QY,QZ,QW]");
+  command.add_option("--joints", joints, "Where the arm's seven joints begin [rad]")
+      .type_name("J1,...,J7");
+}
+
 RunOverrides RunFlags::resolved(const RobotLibrary& robots) const {
   RunOverrides out = overrides;
   out.controllers = controllers.catalogue();
@@ -35,6 +47,8 @@ RunOverrides RunFlags::resolved(const RobotLibrary& robots) const {
   } else if (!robot.empty()) {
     out.robot = robot;
   }
+  if (!hand_goal.empty()) out.hand_goal = hand_goal_from_text(hand_goal, "--hand-goal");
+  if (!joints.empty()) out.joints = joints_from_text(joints, "--joints");
   out.parameters = parameters_set(settings);
   return out;
 }

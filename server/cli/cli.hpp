@@ -62,7 +62,11 @@ struct RunFlags {
   std::vector<std::string> settings{};  // k=v
   std::string physics{};
   std::string robot{};  // --robot-model
+  std::string hand_goal{};
+  std::string joints{};
   void add_to(Command command);
+  /// --hand-goal and --joints, for a command that runs one scenario.
+  void add_arm_to(Command command);
   /// Throws DocumentError for a malformed --set, LibraryError for an unknown robot, and
   /// std::exception with a sentence for a controller that cannot be.
   RunOverrides resolved(const RobotLibrary& robots = own_robots()) const;

@@ -124,6 +124,7 @@ void add_run_command(Command app, int& status) {
   command.add_option("SCENARIO", options->scenario, "Name of a scenario, or path of a .json file")
       .required();
   options->flags.add_to(command);
+  options->flags.add_arm_to(command);
   command.add_option("--out", options->out, "Also store the run in this database").type_name("DB");
   command.add_option("--pace", options->pace, "Times real time; 0 (default): as fast as it goes")
       .range(0.0, 1000.0);

@@ -249,6 +249,7 @@ void add_serve_command(Command app, int& status) {
       .range(0, 1024)
       .show_default();
   options->flags.add_to(command);
+  options->flags.add_arm_to(command);
   command.callback([options, &status] {
     serve(*options);
     status = 0;

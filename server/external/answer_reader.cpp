@@ -1,4 +1,5 @@
 // server/external/answer_reader.cpp: checks every byte that a controller sends.
+#include <algorithm>
 #include <cmath>
 
 #include "controller_generated.h"
@@ -102,6 +103,20 @@ void check_shape(const algo::Layer& layer) {
   }
 }
 
+/// Rates of all joints of an arm, or none.
+void read_joint_rates(const flatbuffers::Vector<double>* rates, algo::ControlOutput& out) {
+  if (rates == nullptr) return;
+  algo::JointValues& values = out.joint_rates.emplace();
+  if (rates->size() != values.size()) {
+    throw ControllerError(
+        fmt::format("It commanded {} joints; an arm has {}.", rates->size(), values.size()));
+  }
+  if (reinterpret_cast<std::uintptr_t>(rates->Data()) % alignof(double) != 0) {
+    throw ControllerError("It commanded joints by numbers that are not aligned.");
+  }
+  std::ranges::copy(*rates, values.begin());
+}
+
 void read_layer(const fb::Layer& in, Texts& texts, algo::Layer& layer) {
   read_text(in.name(), texts, layer.name);
   if (layer.name.empty()) throw ControllerError("It sent a layer without a name.");
@@ -152,6 +167,15 @@ void read_shown(const fb::Command& in, Texts& texts, algo::ControlOutput& out) {
 
 }  // namespace
 
+void check_speeds(const algo::ControlOutput& out) {
+  const auto good = [](double rate) { return std::isfinite(rate); };
+  if (algo::finite(out.twist) &&
+      (!out.joint_rates || std::ranges::all_of(*out.joint_rates, good))) {
+    return;
+  }
+  throw ControllerError("It commanded a speed that is not a finite number.");
+}
+
 Hello read_hello(std::span<const std::byte> message) {
   const fb::Hello* hello = read_message(message).body_as_Hello();
   if (hello == nullptr) throw ControllerError("It did not begin with a Hello.");
@@ -176,9 +200,8 @@ void read_answer(std::span<const std::byte> message,
   }
   if (command->twist() == nullptr) throw ControllerError("It sent a Command without a twist.");
   out.twist = {command->twist()->v(), command->twist()->omega()};
-  if (!algo::finite(out.twist)) {
-    throw ControllerError("It commanded a speed that is not a finite number.");
-  }
+  read_joint_rates(command->joint_rates(), out);
+  check_speeds(out);
   out.waits = command->waits();
   out.state = command->state();
   read_sentence(command->what(), words.what);

@@ -57,6 +57,9 @@ void ExternalController::ask(const algo::ControlInput& in,
   words.why.clear();
   well_ = false;
   peer_->answer({tick_, in, parameters}, out, words);
+  if (out.joint_rates && !in.spec->arm) {
+    throw ControllerError("The controller commands joints, and this robot has no arm.");
+  }
   well_ = true;
 }
 

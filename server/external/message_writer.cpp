@@ -25,9 +25,33 @@ Offset<flatbuffers::String> write_text(Builder& b, std::string_view text) {
   return b.CreateString(text.data(), text.size());
 }
 
+Offset<flatbuffers::Vector<double>> write_joints(Builder& b, const algo::JointValues& values) {
+  return b.CreateVector(values.data(), values.size());
+}
+
+Offset<fb::Arm> write_arm(Builder& b, const std::optional<algo::ArmSpec>& arm) {
+  if (!arm) return 0;
+  const algo::Vec3& at = arm->shoulder_R;
+  const fb::Place shoulder(at.x(), at.y(), at.z(), arm->heading);
+  const auto limits = write_joints(b, arm->limits);
+  const auto rates = write_joints(b, arm->rates);
+  const auto rest = write_joints(b, arm->rest);
+  return fb::CreateArm(b,
+                       &shoulder,
+                       arm->upper_arm,
+                       arm->elbow_offset,
+                       arm->forearm,
+                       arm->hand,
+                       limits,
+                       rates,
+                       rest);
+}
+
 Offset<fb::Robot> write_robot(Builder& b, const algo::RobotSpec& robot) {
+  const auto name = write_text(b, robot.name);
+  const auto arm = write_arm(b, robot.arm);
   return fb::CreateRobot(b,
-                         write_text(b, robot.name),
+                         name,
                          robot.radius,
                          robot.half_length,
                          robot.half_width,
@@ -38,7 +62,8 @@ Offset<fb::Robot> write_robot(Builder& b, const algo::RobotSpec& robot) {
                          robot.max_acceleration,
                          robot.max_angular_acceleration,
                          robot.command_delay,
-                         robot.has_laser);
+                         robot.has_laser,
+                         arm);
 }
 
 Offset<flatbuffers::Vector<const fb::RangeReading*>> write_ring(
@@ -93,6 +118,9 @@ MessageWriter::Bytes MessageWriter::question(const Question& question,
   const auto values = b.CreateVector(values_);
   const auto sonar = write_ring(b, in.observation->sonar);
   const auto infrared = write_ring(b, in.observation->infrared);
+  const auto& joints = in.observation->joints;
+  const auto positions = joints ? write_joints(b, joints->position) : 0;
+  const auto turns = joints ? write_joints(b, joints->rate) : 0;
   const fb::Now now(question.tick, in.stamp, to_wire(in.odometry.pose), to_wire(in.odometry.twist));
   const fb::ScanShape shape(scan.stamp,
                             to_wire(scan.mount_R),
@@ -115,6 +143,8 @@ MessageWriter::Bytes MessageWriter::question(const Question& question,
   body.add_parameters(values);
   body.add_sonar(sonar);
   body.add_infrared(infrared);
+  body.add_joints(positions);
+  body.add_joint_rates(turns);
   return finished(b, fb::Body_Observation, body.Finish().Union());
 }
 

@@ -56,4 +56,7 @@ void read_answer(std::span<const std::byte> message,
                  algo::ControlOutput& out,
                  algo::Explanation& words);
 
+/// Throws ControllerError if base or joints are not commanded by finite numbers.
+void check_speeds(const algo::ControlOutput& out);
+
 }  // namespace server::external

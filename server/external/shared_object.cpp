@@ -38,6 +38,26 @@ tautline_pose to_plain(const algo::Pose2& p) {
   return {p.x, p.y, p.heading};
 }
 
+static_assert(algo::kArmJoints == TAUTLINE_JOINTS);
+
+tautline_arm to_plain(const algo::ArmSpec& arm) {
+  tautline_arm out{.x = arm.shoulder_R.x(),
+                   .y = arm.shoulder_R.y(),
+                   .z = arm.shoulder_R.z(),
+                   .heading = arm.heading,
+                   .upper_arm = arm.upper_arm,
+                   .elbow_offset = arm.elbow_offset,
+                   .forearm = arm.forearm,
+                   .hand = arm.hand,
+                   .limits = {},
+                   .rates = {},
+                   .rest = {}};
+  std::ranges::copy(arm.limits, out.limits);
+  std::ranges::copy(arm.rates, out.rates);
+  std::ranges::copy(arm.rest, out.rest);
+  return out;
+}
+
 void to_plain(const algo::Recycled<algo::RangeReading>& ring, std::vector<tautline_reading>& out) {
   out.clear();
   for (const algo::RangeReading& r : ring) {
@@ -87,6 +107,7 @@ void SharedObjectPeer::begin(const Begin& begin) {
   pointers.reserve(parameters_.size());
   for (const std::string& each : names) pointers.push_back(each.c_str());
   const algo::RobotSpec& robot = begin.robot;
+  const tautline_arm arm = robot.arm ? to_plain(*robot.arm) : tautline_arm{};
   const tautline_run run{.scenario = begin.run.scenario.c_str(),
                          .seed = begin.run.seed,
                          .start = to_plain(begin.start_W),
@@ -102,7 +123,8 @@ void SharedObjectPeer::begin(const Begin& begin) {
                          .command_delay = robot.command_delay,
                          .has_laser = robot.has_laser ? 1 : 0,
                          .parameter_count = static_cast<std::uint32_t>(pointers.size()),
-                         .parameter_names = pointers.data()};
+                         .parameter_names = pointers.data(),
+                         .arm = robot.arm ? &arm : nullptr};
   functions_.reset(self_, &run);
 }
 
@@ -139,6 +161,10 @@ tautline_observation SharedObjectPeer::observation(const Question& question) {
   seen.infrared_count = static_cast<std::uint32_t>(infrared_.size());
   seen.sonar = sonar_.data();
   seen.infrared = infrared_.data();
+  if (const auto& joints = in.observation->joints) {
+    seen.joints = joints->position.data();
+    seen.joint_rates = joints->rate.data();
+  }
   return seen;
 }
 
@@ -154,11 +180,13 @@ void SharedObjectPeer::answer(const Question& question,
   };
   if (result != 0) fail(fmt::format("It gave up: {}", text_of(command.why)));
   out.twist = {command.twist.v, command.twist.omega};
-  if (!algo::finite(out.twist)) fail("It commanded a speed that is not a finite number.");
+  if (command.turns_joints != 0)
+    std::ranges::copy(command.joint_rates, out.joint_rates.emplace().begin());
   if (command.layer_count > kMostLayers || command.measure_count > kMostMeasures) {
     fail(fmt::format("It may show {} layers and {} measures at most.", kMostLayers, kMostMeasures));
   }
   try {
+    check_speeds(out);
     read(command, out, words);
   } catch (const ControllerError& e) {
     fail(e.what());

@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #define TAUTLINE_CONTROLLER_VERSION 1
+#define TAUTLINE_JOINTS 7
 
 #ifdef __cplusplus
 extern "C" {
@@ -21,6 +22,15 @@ struct tautline_pose {
 };
 struct tautline_twist {
   double v, omega; /* [m/s], [rad/s] */
+};
+
+/* An arm (docs/arm.md). Of the joints, the shoulder's first. */
+struct tautline_arm {
+  double x, y, z, heading; /* of the shoulder, in R */
+  double upper_arm, elbow_offset, forearm, hand; /* [m] */
+  double limits[TAUTLINE_JOINTS]; /* [rad] to either side */
+  double rates[TAUTLINE_JOINTS];  /* [rad/s] the fastest */
+  double rest[TAUTLINE_JOINTS];   /* [rad] the folded pose */
 };
 
 /* The run that begins, and the robot: a rectangle if half_length is above 0, else a disc. */
@@ -37,6 +47,7 @@ struct tautline_run {
   int has_laser;                             /* if not, the sonar ring replaces the scan */
   uint32_t parameter_count;                  /* the values come with each observation */
   const char* const* parameter_names;
+  const struct tautline_arm* arm; /* null if the robot has none */
 };
 
 struct tautline_reading {
@@ -65,6 +76,8 @@ struct tautline_observation {
   uint32_t sonar_count, infrared_count;
   const struct tautline_reading* sonar;
   const struct tautline_reading* infrared;
+  const double* joints;      /* [rad] measured; null without an arm */
+  const double* joint_rates; /* [rad/s] */
 };
 
 /* kind: 0 points, 1 polyline, 2 arrows, 3 circles, 4 arcs; frame: 0 is W, 1 is R; positions are x y
@@ -92,6 +105,8 @@ struct tautline_command {
   uint32_t layer_count;
   const struct tautline_measure* measures;
   uint32_t measure_count;
+  int turns_joints; /* if not, the arm rests; a goal that people set for the arm comes first */
+  double joint_rates[TAUTLINE_JOINTS]; /* [rad/s] */
 };
 
 /* Returns TAUTLINE_CONTROLLER_VERSION. */

@@ -45,9 +45,10 @@ class FrameEncoder {
 };
 
 /// Reads back the inputs that a pipeline needs to repeat a tick (observation, requests) and its
-/// result (command, hold, limit, mission, behaviour). The output's twist comes back if `answered`.
-/// Fields for viewers only (truth, moved things, clearance, goal, words) come back at the frame's
-/// float precision. Layers and measures, also for viewers only, are not read. Throws WireError.
+/// result (command, hold, limit, mission, behaviour). The output's commands come back if
+/// `answered`. Fields for viewers only (truth, moved things, clearance, goal, words) come back at
+/// the frame's float precision. Layers and measures, also for viewers only, are not read. Throws
+/// WireError.
 void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t);
 
 }  // namespace server

@@ -115,6 +115,19 @@ std::vector<RobotPlan> plans_of_others(const RunSpec& spec) {
   return plans;
 }
 
+void choose_arm(sim::Scenario& scenario, const RunOverrides& overrides) {
+  if (!scenario.robot.arm && (overrides.hand_goal || overrides.joints)) {
+    throw DocumentError(overrides.hand_goal ? "hand_goal" : "joints", "needs a robot with an arm");
+  }
+  if (overrides.joints) scenario.joints = overrides.joints;
+  if (!overrides.hand_goal) return;
+  scenario.goal.reset();
+  scenario.waypoints.clear();
+  scenario.loop = false;
+  scenario.carry = false;
+  scenario.hand_goal = overrides.hand_goal;
+}
+
 /// A robot without an arm makes no use of them.
 std::vector<algo::Obstacle> declared_of(const sim::Scenario& scenario) {
   return scenario.robot.arm ? scenario.obstacles : std::vector<algo::Obstacle>{};
@@ -163,6 +176,7 @@ RunSpec make_spec(sim::Scenario scenario,
   if (overrides.controller) scenario.controller = *overrides.controller;
   if (overrides.filter) scenario.filter = *overrides.filter;
   if (overrides.physics) scenario.physics = *overrides.physics;
+  choose_arm(scenario, overrides);
   RunSpec spec;
   spec.controllers = overrides.controllers;
   const algo::ControllerCatalogue& catalogue = controllers_of(spec);

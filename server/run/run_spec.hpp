@@ -47,6 +47,9 @@ struct RunOverrides {
   nlohmann::json robot{};
   std::optional<std::uint64_t> seed{};
   nlohmann::json parameters = nlohmann::json::object();
+  // Of a robot with an arm: the hand's goal in place of all others, and where its joints begin.
+  std::optional<algo::SetHandGoal> hand_goal{};
+  std::optional<algo::JointValues> joints{};
   /// As in RunSpec. Comes from the program's own command line, never from a document.
   std::shared_ptr<const algo::ControllerCatalogue> controllers{};
 };

@@ -133,6 +133,24 @@ TEST(BulletArm, TracksSinesWithinTheFiguresOfItsStepRate) {
   EXPECT_LT(fast.resting, 1e-5);
 }
 
+/// A motor at the limit of its torque must not swing past its target, farther each time.
+TEST(BulletArm, AStretchedArmKeepsToARateThatChangesItsSign) {
+  RobotModel robot = arm_robot();
+  robot.arm->start = JointValues{0.8, 1.2, -0.5, 0.7, -0.4, -0.6, -0.3};
+  BulletBench bench(robot);
+  const double rate = robot.arm->rates[1];
+  double fastest = 0;
+  for (int n = 0; n < 80; ++n) {
+    bench.run({}, {0, (n / 4) % 2 == 0 ? rate : -rate, 0, 0, 0, 0, 0}, kArmTick);
+    fastest = std::max(fastest, std::abs(bench.arm().rate[1]));
+  }
+  EXPECT_LT(fastest, 2 * rate);
+  const double there = bench.arm().position[1];
+  bench.run({}, {}, 0.2);
+  EXPECT_NEAR(bench.arm().position[1], there, 0.08);
+  EXPECT_LT(std::abs(bench.arm().rate[1]), 0.1);
+}
+
 TEST(BulletArm, SagsUnderAPayloadThatItsMotorsCannotHold) {
   RobotModel strong = arm_robot();
   strong.arm->rest = {0, std::numbers::pi / 2, 0, 0, 0, 0, 0};  // stretched out

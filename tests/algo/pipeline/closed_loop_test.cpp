@@ -90,6 +90,10 @@ class Drive {
     controller_->reset(pose_);
   }
 
+  void set(const algo::ParameterInfo& parameter, double value) {
+    parameters_.set(parameter, value);
+  }
+
   Outcome run() {
     const double limit = 5 * goal_.norm() / v_max_;
     for (std::size_t tick = 0;; ++tick) {
@@ -241,6 +245,19 @@ TEST(ClosedLoop, ViaKeptNeverCollides) {
     const Outcome outcome = Drive(each, "via_kept", 41).run();
     EXPECT_NE(outcome.name, "collided") << each.at("name");
     EXPECT_GT(outcome.clearance(), 100_mm) << each.at("name");
+  }
+}
+
+/// equations.md D: a robot that drives by the sibling thesis' buffer keeps to stale via points.
+TEST(ClosedLoop, TheViaBufferDrivesTheOriginalStripIntoMostLayouts) {
+  for (const double rule : {1.0, 2.0}) {
+    int collided = 0;
+    for (const Json& each : paper().at("scenarios")) {
+      Drive drive(each, "original", 1);
+      drive.set(algo::kViaBuffer, rule);
+      if (drive.run().name == "collided") ++collided;
+    }
+    EXPECT_GE(collided, 6) << "of 9, rule " << rule;
   }
 }
 

@@ -57,6 +57,7 @@ TEST(AnswerReader, ReadsEveryField) {
   command.what = "Waiting";
   command.why = "A door is shut.";
   command.layers.push_back(std::make_unique<fb::LayerT>(line()));
+  command.joint_rates = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7};
   command.measures.push_back(std::make_unique<fb::MeasureT>());
   command.measures[0]->name = "mine.cost";
   command.measures[0]->unit = "s";
@@ -65,6 +66,7 @@ TEST(AnswerReader, ReadsEveryField) {
   read(got, bytes_of(command));
   EXPECT_EQ(got.out.twist, (algo::Twist2{0.25, -0.5}));
   EXPECT_TRUE(got.out.waits);
+  EXPECT_EQ(got.out.joint_rates, (algo::JointValues{0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7}));
   EXPECT_EQ(got.out.state, 3);
   EXPECT_EQ(got.words, (algo::Explanation{"Waiting", "A door is shut."}));
   ASSERT_EQ(got.out.layers.size(), 1U);
@@ -93,6 +95,9 @@ TEST(AnswerReader, RefusesWhatIsWrongWithASentence) {
        [](auto& c) {
          c.twist = std::make_unique<fb::Twist2>(std::numeric_limits<double>::infinity(), 0);
        }},
+      {"It commanded 6 joints; an arm has 7.", [](auto& c) { c.joint_rates.assign(6, 0.1); }},
+      {"not a finite number",
+       [](auto& c) { c.joint_rates.assign(7, std::numeric_limits<double>::quiet_NaN()); }},
       {"It gave up: no map", [](auto& c) { c.failure = "no map"; }},
       {"a sentence of 501 bytes", [](auto& c) { c.what = std::string(501, 'a'); }},
       {"33 layers; at most 32",

@@ -68,6 +68,7 @@ TEST(ArmFrame, AnArmComesBackFromItsFrameAndNoneCostsNothing) {
   t.ground_truth.emplace().touched = algo::BodyLink::Forearm;
   algo::SetHandGoal goal{.position_W = {1.0 / 3, 2, 3},
                          .attitude_W = {0.5, 0.5, 0.5, 0.5},
+                         .path_W = {{1, 2, 1.0 / 3}, {4, 5, 6}},
                          .arm_angle = 0.7,
                          .base_stays = true,
                          .then = algo::SetGoal{{1, 2}, 0.3}};
@@ -86,11 +87,14 @@ TEST(ArmFrame, AnArmComesBackFromItsFrameAndNoneCostsNothing) {
   t.arm.ghost.push_back({1, 2, 3});
   t.command.joints = algo::kArmJoints;
   t.command.joint_rates = {0.1, -1.0 / 9};
+  t.output.answered = true;
+  t.output.joint_rates = algo::JointValues{0.3, -1.0 / 7};
   FrameEncoder encoder;
   algo::Telemetry again;
   decode_frame(encoder.encode(t), again);
   EXPECT_EQ(again.observation.joints, t.observation.joints);
   EXPECT_EQ(again.command, t.command);
+  EXPECT_EQ(again.output.joint_rates, t.output.joint_rates);
   EXPECT_EQ(again.ground_truth->touched, algo::BodyLink::Forearm);
   ASSERT_EQ(again.requests.size(), t.requests.size());
   for (std::size_t k = 0; k < t.requests.size(); ++k)
@@ -134,6 +138,15 @@ TEST_F(ArmRun, ARobotFetchesPastAPersonWhoWalks) {
   EXPECT_EQ(out.result.run.outcome, algo::Outcome::Reached) << out.result.run.reason;
   EXPECT_GT(out.room, 0);
   EXPECT_EQ(out.words, "The robot is back from where its hand has been.");
+}
+
+TEST_F(ArmRun, TheHandFollowsItsPathWhileTheBaseAvoidsAPost) {
+  const RunSpec spec = arm_spec("arm_follow");
+  const ArmOutcome out = run_arm(spec);
+  EXPECT_EQ(out.result.run.outcome, algo::Outcome::Reached)
+      << out.result.run.reason << ' ' << out.words;
+  EXPECT_EQ(out.words, "The hand is at the end of its path.");
+  EXPECT_GT(out.room, 0.05);
 }
 
 TEST_F(ArmRun, AGoalOutOfReachIsGivenUpInWords) {

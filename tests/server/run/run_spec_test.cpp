@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "server/run/arm_json.hpp"
 #include "server/run/hardware.hpp"
 #include "server/run/json_reader.hpp"
 
@@ -40,6 +41,42 @@ std::string complaint(const sim::Scenario& scenario, const RunOverrides& overrid
     return e.what();
   }
   return "";
+}
+
+TEST(RunSpec, AHandGoalTakesThePlaceOfAllGoalsAndNeedsAnArm) {
+  RunOverrides overrides;
+  overrides.hand_goal = hand_goal_from_text("2.5,0,0.95,0,0.6,0,0.8", "--hand-goal");
+  overrides.joints = joints_from_text("0,1.57,0,0,0,0,0.5", "--joints");
+  EXPECT_EQ(complaint({}, overrides), "hand_goal: needs a robot with an arm");
+  sim::Scenario scenario;
+  scenario.robot = builtin_robot("silvermate_arm");
+  scenario.goal = algo::SetGoal{{4, 0}, {}};
+  scenario.carry = true;
+  const RunSpec spec = make_spec(scenario, overrides);
+  EXPECT_FALSE(spec.scenario.goal);
+  EXPECT_EQ(first_requests(spec), std::vector<algo::Request>{*overrides.hand_goal});
+  EXPECT_EQ(overrides.hand_goal->position_W, algo::Vec3(2.5, 0, 0.95));
+  EXPECT_EQ(overrides.hand_goal->attitude_W, (algo::Quaternion{0.8, 0, 0.6, 0}));
+  EXPECT_EQ(spec.scenario.joints->at(6), 0.5);
+}
+
+TEST(RunSpec, RefusesAHandGoalThatIsNoneInWords) {
+  struct Case {
+    const char* text;
+    const char* complaint;
+  };
+  for (const Case& each :
+       {Case{"1,2", "--hand-goal: must be x,y,z or x,y,z,qx,qy,qz,qw"},
+        Case{"1,2,up", "--hand-goal: '1,2,up' is no list of numbers such as 1,0.5,2"},
+        Case{"1,2,3,0,0,0,0.5", "--hand-goal/qw: and qx, qy, qz must have length 1, not 0.500"}}) {
+    try {
+      hand_goal_from_text(each.text, "--hand-goal");
+      ADD_FAILURE() << each.text;
+    } catch (const DocumentError& e) {
+      EXPECT_STREQ(e.what(), each.complaint);
+    }
+  }
+  EXPECT_THROW(joints_from_text("0,1", "--joints"), DocumentError);
 }
 
 /// The built-in controllers, and "mine" outside the program.
