@@ -1,4 +1,4 @@
-// algo/mapping/path_polish.cpp: one more pass over all scans.
+// algo/mapping/path_polish.cpp: passes over all scans.
 #include "algo/mapping/path_polish.hpp"
 
 #include "algo/mapping/occupancy_map.hpp"
@@ -7,31 +7,35 @@
 namespace algo {
 namespace {
 
-constexpr MatchPrior kPolishPrior{.position = 1, .heading = 2};  // holds the path together
-constexpr double kCarried = 0.9;  // of the last scan's correction, where a scan alone tells little
+constexpr int kPasses = 2;
+constexpr MatchPrior kPolishPrior{.position = 0.2, .heading = 0.4};  // where no wall tells
+
+OccupancyMap drawn_along(std::span<const Pose2> path_W,
+                         std::span<const LaserScan> scans,
+                         const MapperSettings& settings) {
+  OccupancyMap map(settings.cell);
+  Pose2 entered_W{};
+  for (std::size_t i = 0; i < path_W.size(); ++i) {
+    if (i > 0 && !apart(entered_W, path_W[i], settings)) continue;
+    map.insert(scans[i], compose(path_W[i], scans[i].mount_R), settings.reach);
+    entered_W = path_W[i];
+  }
+  return map;
+}
 
 }  // namespace
 
 std::vector<Pose2> polish_path(std::span<const Pose2> path_W,
                                std::span<const LaserScan> scans,
                                const MapperSettings& settings) {
-  std::vector<Pose2> polished_W;
-  polished_W.reserve(path_W.size());
-  OccupancyMap map(settings.cell);
+  std::vector<Pose2> polished_W(path_W.begin(), path_W.end());
   ScanMatcher matcher;
-  Pose2 entered_W{};
-  Pose2 correction{};  // of the scan before, seen from its fitted pose
-  for (std::size_t i = 0; i < path_W.size(); ++i) {
-    matcher.take(scans[i], settings.reach);
-    const Pose2 guess_W =
-        compose(path_W[i],
-                {kCarried * correction.x, kCarried * correction.y, kCarried * correction.heading});
-    const Pose2 pose_W = matcher.match(map, guess_W, kPolishPrior).pose_W;
-    correction = pose_step(path_W[i], pose_W);
-    polished_W.push_back(pose_W);
-    if (i > 0 && !apart(entered_W, pose_W, settings)) continue;
-    map.insert(scans[i], compose(pose_W, scans[i].mount_R), settings.reach);
-    entered_W = pose_W;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const OccupancyMap map = drawn_along(polished_W, scans, settings);
+    for (std::size_t i = 0; i < polished_W.size(); ++i) {
+      matcher.take(scans[i], settings.reach);
+      polished_W[i] = matcher.match(map, polished_W[i], kPolishPrior).pose_W;
+    }
   }
   return polished_W;
 }

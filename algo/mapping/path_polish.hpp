@@ -1,4 +1,4 @@
-// algo/mapping/path_polish.hpp: lays each scan of a fitted path onto the walls seen before.
+// algo/mapping/path_polish.hpp: lays each scan of a fitted path onto the walls of all scans.
 #pragma once
 
 #include <span>
@@ -10,9 +10,10 @@
 
 namespace algo {
 
-/// Matches each scan to the map of all scans before it, from its pose in `path_W` on. The fit of
-/// the graph spreads errors evenly over the path; this takes out the last centimetres, where walls
-/// tell. Nothing drifts, because corrections fade: each match starts near the fitted pose.
+/// Draws the map of all scans along `path_W`, matches each scan to it from its pose on, and repeats
+/// this. The fit of the graph spreads errors evenly over the path; this takes out the last
+/// centimetres, where walls tell. The map must not grow while scans are matched to it: along a
+/// corridor each scan would lean on the one before, and the path would drift by metres.
 std::vector<Pose2> polish_path(std::span<const Pose2> path_W,
                                std::span<const LaserScan> scans,
                                const MapperSettings& settings);
