@@ -33,9 +33,9 @@ void FullStripController::report(const ControlInput& in, ControlOutput& out) con
   out.state = state_;
   out.waits = state_ == kNoWay || state_ == kGoalTaken || state_ == kBlocked || state_ == kCornered;
   Layer& map = add_layer(out.layers, kMap);
-  if (in.grids) map_.draw(in.odometry.pose.position(), kDrawn, map);
+  if (in.grids) senses_.map().draw(in.odometry.pose.position(), kDrawn, map);
   Layer& plan = add_layer(out.layers, layers::kPlan);
-  for (const Vec2& point : path_W_) put(plan, point);
+  for (const Vec2& point : route_.path_W()) put(plan, point);
   show_weighed(out);
   show_strip(out);
   show_moving(out);
@@ -55,27 +55,31 @@ void FullStripController::show_weighed(ControlOutput& out) const {
 
 void FullStripController::show_strip(ControlOutput& out) const {
   Layer& line = add_layer(out.layers, layers::kStrip);
-  for (const Node& node : strip_.nodes()) put(line, node.position_W);
+  for (const Node& node : route_.strip().nodes()) put(line, node.position_W);
   Layer& ahead = add_layer(out.layers, layers::kStripAhead, 4);
-  if (strip_.empty()) return;
+  const NodeStrip& strip = route_.strip();
+  if (strip.empty()) return;
   // It ends short of a goal that lies beyond the map or under an obstacle.
-  if (goal_W_ && strip_.end_W() != *goal_W_) put(ahead, strip_.end_W(), *goal_W_);
-  out.measures.push_back({"strip.length", "m", strip_.length()});
+  const auto& goal_W = route_.goal_W();
+  if (goal_W && strip.end_W() != *goal_W) put(ahead, strip.end_W(), *goal_W);
+  out.measures.push_back({"strip.length", "m", strip.length()});
 }
 
 void FullStripController::show_moving(ControlOutput& out) const {
   const auto show = [&](const LayerInfo& info, bool hidden) {
     Layer& circles = add_layer(out.layers, info, 3 * kFewMoving);
-    for (const Track& track : tracker_.moving()) {
+    for (const Track& track : senses_.tracker().moving()) {
       if ((track.unseen > kOutOfSight) == hidden) put(circles, track.position_W, track.radius);
     }
   };
   show(kMoving, false);
   show(kHidden, true);
   Layer& velocities = add_layer(out.layers, kVelocities, 4 * kFewMoving);
-  for (const Track& track : tracker_.moving()) put(velocities, track.position_W, track.velocity_W);
+  for (const Track& track : senses_.tracker().moving())
+    put(velocities, track.position_W, track.velocity_W);
   if (!among_moving_) return;
-  out.measures.push_back({"moving.count", "", static_cast<double>(tracker_.moving().size())});
+  out.measures.push_back(
+      {"moving.count", "", static_cast<double>(senses_.tracker().moving().size())});
 }
 
 void FullStripController::explain(const Telemetry& t, Explanation& words) const {

@@ -31,6 +31,7 @@ void add_verify_command(Command app, int& status);
 void add_health_command(Command app, int& status);
 void add_reproduce_command(Command app, int& status);
 void add_barn_command(Command app, int& status);
+void add_buildings_command(Command app, int& status);
 void add_climbs_command(Command app, int& status);
 void add_soak_command(Command app, int& status);
 void add_emulate_command(Command app, int& status);

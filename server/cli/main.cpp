@@ -7,6 +7,7 @@ int main(int argc, char** argv) {
   commands.insert(commands.end(),
                   {add_reproduce_command,
                    add_barn_command,
+                   add_buildings_command,
                    add_climbs_command,
                    add_soak_command,
                    add_compare_command,

@@ -1,6 +1,8 @@
 // server/experiment/judges/silence.cpp: whether a robot that stands still gives a reason.
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <string_view>
 
 #include "algo/gate.hpp"
 #include "server/experiment/judge.hpp"
@@ -8,15 +10,19 @@
 namespace server::experiment::judges {
 namespace {
 
-constexpr double kSilenceTimeLimit = 300;  // [s]
-constexpr double kStands = 20;             // [s] without moving or turning: the robot stands
+constexpr double kSilenceTimeLimit = 300;  // [s] unless the trial sets another
+constexpr double kStands = 20;             // [s] without moving or turning, unless it sets another
 constexpr double kWay = 0.05;              // [m]
 constexpr double kTurn = 0.2;              // [rad]
 
 constexpr Column kSilenceColumns[] = {
-    {"silent", Aggregate::Sum, 0},     // 1: it stood for 20 s and gave no reason
-    {"not_finite", Aggregate::Sum, 0}  // 1: a command was not a number
+    {"silent", Aggregate::Sum, 0},        // 1: it stood for 20 s and gave no reason
+    {"not_finite", Aggregate::Sum, 0},    // 1: a command was not a number
+    {"end_state", Aggregate::Largest, 0}  // of the controller, as its words explain it
 };
+constexpr std::string_view kStandsSetting = "stands_s";
+constexpr std::string_view kLimitSetting = "limit_s";
+constexpr std::string_view kSilenceSettings[] = {kStandsSetting, kLimitSetting};
 
 bool finite(const algo::Telemetry& t) {
   return std::isfinite(t.output.twist.v) && std::isfinite(t.output.twist.omega) &&
@@ -47,15 +53,18 @@ class Stand {
   double since_ = -1;  // [s]
 };
 
-/// Ends a run when the robot arrives, collides, stands for 20 s or has driven for 300 s. The reason
-/// is the robot's last sentence.
+/// Ends a run when the robot arrives, collides, stands for `stands_s` or has driven for `limit_s`.
+/// The reason is the robot's last sentence.
 class Silence final : public Judge {
  public:
-  explicit Silence(const JudgedRun& /*run*/) {}
+  explicit Silence(const JudgedRun& run)
+      : stands_(run.setting(kStandsSetting, kStands)),
+        limit_(run.setting(kLimitSetting, kSilenceTimeLimit)) {}
 
   void see(const algo::Telemetry& t) override {
     if (!t.ground_truth || ending_) return;
     const double stamp = t.observation.stamp;
+    state_ = t.output.state;
     reason_ = gives_reason(t) ? stamp : reason_;
     not_finite_ = !finite(t);
     if (not_finite_) return end(algo::Outcome::Failed, t);
@@ -63,18 +72,19 @@ class Silence final : public Judge {
     if (t.ground_truth->fallen) return end(algo::Outcome::Fallen, t);
     if (t.ground_truth->collided) return end(algo::Outcome::Collided, t);
     if (t.mission == algo::Mission::Arrived) return end(algo::Outcome::Reached, t);
-    if (stand_.seconds(t.ground_truth->pose, stamp) > kStands) {
+    if (stand_.seconds(t.ground_truth->pose, stamp) > stands_) {
       // A reason given at any time while it stood counts: between attempts it may announce the
       // attempt instead.
-      silent_ = stamp - reason_ >= kStands;
+      silent_ = stamp - reason_ >= stands_;
       return end(algo::Outcome::Stuck, t);
     }
-    if (stamp > kSilenceTimeLimit) end(algo::Outcome::OutOfTime, t);
+    if (stamp > limit_) end(algo::Outcome::OutOfTime, t);
   }
 
   void write(std::span<double> row) const override {
     row[0] = silent_ ? 1 : 0;
     row[1] = not_finite_ ? 1 : 0;
+    row[2] = state_;
   }
 
   std::optional<Ending> ending() const override { return ending_; }
@@ -84,8 +94,11 @@ class Silence final : public Judge {
     ending_ = Ending{outcome, t.words.why};
   }
 
+  double stands_ = 0;  // [s]
+  double limit_ = 0;   // [s]
   Stand stand_{};
-  double reason_ = -kStands;  // [s] when it last gave a reason
+  double reason_ = -std::numeric_limits<double>::infinity();  // [s] when it last gave a reason
+  int state_ = 0;
   bool silent_ = false;
   bool not_finite_ = false;
   std::optional<Ending> ending_{};
@@ -97,6 +110,7 @@ JudgeInfo silence() {
   return {.help = "Whether the robot stood still without saying why, or commanded no number",
           .columns = kSilenceColumns,
           .make = make_judge<Silence>,
+          .settings = kSilenceSettings,
           .ends = true};
 }
 

@@ -320,6 +320,21 @@ TEST_F(SilenceTest, AMovingRobotNeedsNoReason) {
   EXPECT_EQ(silence["silent"], 0);
 }
 
+TEST_F(SilenceTest, ATrialSetsItsTimes) {
+  const auto begin = [&] {
+    silence = Watched("silence", {{"stands_s", 60}, {"limit_s", 100}});
+    silence.robot.period = 1;
+  };
+  begin();
+  for (int second = 0; second <= 60; ++second) tick(0, true);
+  EXPECT_FALSE(silence.ending());
+  tick(0, true);
+  EXPECT_EQ(silence.ending()->outcome, Outcome::Stuck);
+  begin();
+  for (int second = 0; second <= 101; ++second) tick(0.1 * second, true);
+  EXPECT_EQ(silence.ending()->outcome, Outcome::OutOfTime);
+}
+
 TEST_F(SilenceTest, ArrivalContactAndNanEndIt) {
   tick(0, false, algo::Mission::Arrived);
   EXPECT_EQ(silence.ending()->outcome, Outcome::Reached);

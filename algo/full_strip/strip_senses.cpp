@@ -1,0 +1,56 @@
+// algo/full_strip/strip_senses.cpp: scans into map and tracks.
+#include "algo/full_strip/strip_senses.hpp"
+
+#include <algorithm>
+
+namespace algo {
+namespace {
+
+constexpr double kTrace = 0.25;  // [m] around an obstacle found moving: its traces in the map
+
+}  // namespace
+
+void StripSenses::reset(const Pose2& start_W) {
+  map_.reset(start_W.position());
+  tracker_.reset();
+  points_.reset();
+  placed_ = false;
+}
+
+void StripSenses::update(const ControlInput& in, const HullCheck& hull, bool track) {
+  const Pose2& here = in.odometry.pose;
+  points_.follow(here, in.stamp);
+  map_.follow(here.position());
+  if (!placed_) hull.take_place(map_.seen(), here);
+  placed_ = true;
+  hull.stand_on(map_.seen(), here);
+  const LaserScan& scan = in.scene->scan;
+  if (in.scene->fresh && scan.size() > 0) {
+    const Pose2 sensor_W = points_.map(scan);
+    if (track) tracker_.update(scan, sensor_W, points_.points_W());
+    map_.insert(scan, sensor_W, points_.points_W(), tracker_);
+    forget_traces(in, hull);
+  }
+  tracker_.predict(in.stamp);
+}
+
+/// Frees impossible obstacles from the map: on the way of an obstacle found moving, and inside the
+/// robot's own hull, which no sensor looks at.
+void StripSenses::forget_traces(const ControlInput& in, const HullCheck& hull) {
+  for (const Track& track : tracker_.just_found()) {
+    const Vec2 way_W = track.velocity_W * track.age;
+    const double length = way_W.norm();
+    const double reach = track.radius + kTrace;
+    map_.erase_near(track.position_W, reach + length, [&](const Vec2& point_W) {
+      const Vec2 d = point_W - track.position_W;
+      const double back = length > 0 ? std::clamp(-d.dot(way_W) / (length * length), 0.0, 1.0) : 0;
+      return (d + back * way_W).squaredNorm() < reach * reach;
+    });
+  }
+  const Pose2& here = in.odometry.pose;
+  map_.erase_near(here.position(), in.spec->radius, [&](const Vec2& point_W) {
+    return hull.covers(here, point_W);
+  });
+}
+
+}  // namespace algo

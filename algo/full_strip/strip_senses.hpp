@@ -1,0 +1,32 @@
+// algo/full_strip/strip_senses.hpp: the full strip's picture of the world: the map of the scans and
+// the tracks of moving obstacles.
+#pragma once
+
+#include "algo/controller.hpp"
+#include "algo/full_strip/local_map.hpp"
+#include "algo/full_strip/motion.hpp"
+#include "algo/full_strip/scan_points.hpp"
+#include "algo/full_strip/tracker.hpp"
+
+namespace algo {
+
+class StripSenses {
+ public:
+  void reset(const Pose2& start_W);
+  /// Enters the scan of this tick, if it is new, each beam from the pose at which it was fired.
+  /// `track`: whether to look for moving obstacles.
+  void update(const ControlInput& in, const HullCheck& hull, bool track);
+
+  const LocalMap& map() const { return map_; }
+  const Tracker& tracker() const { return tracker_; }
+
+ private:
+  void forget_traces(const ControlInput& in, const HullCheck& hull);
+
+  ScanPoints points_{};
+  LocalMap map_{};
+  Tracker tracker_{};
+  bool placed_ = false;  // the start pose is entered into the map
+};
+
+}  // namespace algo

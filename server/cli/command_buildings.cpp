@@ -1,0 +1,111 @@
+// server/cli/command_buildings.cpp: `tautline buildings`: drives to goals in random buildings.
+#include <charconv>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "server/cli/cli.hpp"
+#include "server/cli/pool_options.hpp"
+#include "server/lab/buildings/building_study.hpp"
+#include "server/run/scenario_json.hpp"
+#include "server/run/text_file.hpp"
+
+namespace server {
+namespace {
+
+struct BuildingsCommand {
+  std::string seeds = "0-199";
+  std::vector<std::string> kinds{};
+  bool as_json = false;
+  bool list = false;
+  std::string rows{};
+  std::string scenario{};
+  buildings::Options options{};
+};
+
+/// Parses "A-B" or "A".
+void read_seeds(std::string_view text, buildings::Options& options) {
+  const std::size_t dash = text.find('-');
+  const auto number = [&](std::string_view digits) {
+    std::uint64_t value = 0;
+    const char* const end = digits.data() + digits.size();
+    const auto [stopped, error] = std::from_chars(digits.data(), end, value);
+    if (error != std::errc{} || stopped != end) {
+      throw std::invalid_argument(
+          fmt::format("--seeds: '{}' is no seed or range of seeds like 0-199", text));
+    }
+    return value;
+  };
+  options.first_seed = number(text.substr(0, dash));
+  options.last_seed =
+      dash == std::string_view::npos ? options.first_seed : number(text.substr(dash + 1));
+  constexpr std::uint64_t kMostSeeds = 1'000'000;
+  if (options.last_seed < options.first_seed ||
+      options.last_seed - options.first_seed > kMostSeeds) {
+    throw std::invalid_argument(
+        fmt::format("--seeds: '{}' must ascend, by at most {}", text, kMostSeeds));
+  }
+}
+
+int execute(BuildingsCommand command) {
+  read_seeds(command.seeds, command.options);
+  for (const std::string& kind : command.kinds) {
+    command.options.kinds.push_back(buildings::kind_named(kind));
+  }
+  if (!command.scenario.empty()) {
+    const buildings::Building building =
+        buildings::building_of(command.options.first_seed, command.options.controller);
+    write_text(command.scenario, to_json(building.scenario).dump(1) + "\n");
+    return kReached;
+  }
+  std::vector<buildings::BuildingRun> runs;
+  {
+    ProgressLine progress;
+    command.options.pool.progress = [&](std::size_t done, std::size_t all) {
+      progress.show(fmt::format("{} of {} buildings", done, all));
+    };
+    runs = run_buildings(command.options);
+  }
+  if (!command.rows.empty()) write_table(rows_table(runs), command.rows);
+  if (command.as_json) {
+    fmt::print("{}\n", to_json(runs).dump(2));
+    return kReached;
+  }
+  if (command.list) fmt::print("{}\n", to_text(faults_table(runs)));
+  const buildings::TickTimes ticks = tick_times(runs);
+  fmt::print("{}\ncontrol tick p50 {:.0f} us, p99 {:.0f} us\n",
+             to_text(figures_table(runs)),
+             ticks.p50,
+             ticks.p99);
+  return kReached;
+}
+
+}  // namespace
+
+void add_buildings_command(Command app, int& status) {
+  auto command = std::make_shared<BuildingsCommand>();
+  const Command buildings = app.add_subcommand(
+      "buildings",
+      "Drive to goals in random mazes, flats, offices, halls, dead ends and spirals, and compare "
+      "with a search over the true world");
+  buildings.add_option("--seeds", command->seeds, "One building per seed (default 0-199)")
+      .type_name("A-B");
+  buildings.add_option(
+      "--kinds", command->kinds, "Only these: maze, flat, office, hall, dead_ends, spiral");
+  buildings.add_option("--controller", command->options.controller, "Default: strip");
+  add_pool_options(buildings, command->options.pool, "--workers");
+  add_rows_option(buildings, command->rows);
+  buildings.add_flag("--list", command->list, "List every run that did not end as it should");
+  buildings
+      .add_option("--scenario",
+                  command->scenario,
+                  "Run nothing: write the first building to this file as a scenario for the page")
+      .type_name("FILE");
+  buildings.add_flag("--json", command->as_json, "Print JSON");
+  buildings.callback([command, &status] { status = execute(*command); });
+}
+
+}  // namespace server
