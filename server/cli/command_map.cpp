@@ -72,9 +72,7 @@ int execute(MapCommand command) {
   if (!command.poses.empty()) write_poses(studies.front(), command.poses);
   if (!command.markdown.empty()) write_markdown(studies, command.markdown);
   if (command.as_json) {
-    nlohmann::json out = nlohmann::json::array();
-    for (const mapping::MapStudy& study : studies) out.push_back(to_json(study));
-    fmt::print("{}\n", out.dump(2));
+    fmt::print("{}\n", to_json(studies).dump(2));
   } else {
     for (const mapping::MapStudy& study : studies) fmt::print("{}\n", to_text(study));
   }
@@ -130,7 +128,7 @@ void add_map_command(Command app, int& status) {
                  "Also write tables to this file, and pictures into pictures/mapping/ beside it")
       .check(refuse_folder)
       .type_name("FILE");
-  map.add_flag("--json", command->as_json, "Print JSON");
+  map.add_flag("--json", command->as_json, "Print JSON: an object, or an array of several logs'");
   map.callback([command, &status] { status = execute(*command); });
 }
 

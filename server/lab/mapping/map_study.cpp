@@ -156,4 +156,11 @@ nlohmann::json to_json(const MapStudy& study) {
   return out;
 }
 
+nlohmann::json to_json(const std::vector<MapStudy>& studies) {
+  if (studies.size() == 1) return to_json(studies.front());
+  nlohmann::json out = nlohmann::json::array();
+  for (const MapStudy& study : studies) out.push_back(to_json(study));
+  return out;
+}
+
 }  // namespace server::mapping

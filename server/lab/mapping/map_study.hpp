@@ -75,6 +75,8 @@ const std::vector<algo::Pose2>& first_path(const MapStudy& study);
 void write_poses(const MapStudy& study, const std::filesystem::path& file);
 
 nlohmann::json to_json(const MapStudy& study);
+/// One study as itself, several as an array.
+nlohmann::json to_json(const std::vector<MapStudy>& studies);
 std::string to_text(const MapStudy& study);
 
 /// Draws the map along `path_W`, and that path, as an SVG document.

@@ -186,6 +186,8 @@ TEST_F(MapStudyOfALog, PosesAndRelationsAreOfTheMatchedPath) {
   EXPECT_NEAR(json["translation_mean_m"], (first + second) / 2, 1e-9);
   EXPECT_NEAR(json["translation_sd_m"], std::abs(first - second) / 2, 1e-9);
   EXPECT_TRUE(json.contains("rotation_mean_rad") && json.contains("rotation_sd_rad"));
+  EXPECT_EQ(to_json(std::vector{study}), json);
+  EXPECT_EQ(to_json(std::vector{study, study}), nlohmann::json::array({json, json}));
   write_poses(study, folder_ / "out.txt");
   std::ifstream poses(folder_ / "out.txt");
   double stamp = 0;
