@@ -11,7 +11,6 @@ constexpr std::size_t kTriedPlaces =
     3;                                 // of the base; a plan after one that failed leaves them out
 constexpr double kPlay = 0.01;         // [m] by which the body may come nearer than planned
 constexpr double kPatience = 4;        // [s] without a motion before it plans anew
-constexpr double kPathPatience = 10;   // [s] that the hand may fail to get on along its path
 constexpr double kStandsStill = 1e-3;  // [m/s, rad/s]
 
 /// True if `command` carries on a leg. An arm that gives way while the base stands does not.
@@ -25,8 +24,7 @@ bool carries_on(const BodyCommand& command, ReachLeg::Kind kind) {
 ReachTask::ReachTask(const MobileArm& body, const BodyLimits& limits, const ReachRules& rules)
     : body_(body),
       rules_(rules),
-      follower_(body, limits, {}, {.margin = rules.arm.margin - kPlay}),
-      path_(body, limits) {}
+      follower_(body, limits, {}, {.margin = rules.arm.margin - kPlay}) {}
 
 void ReachTask::begin(const BodyJoints& now,
                       const ReachGoal& goal,
@@ -36,7 +34,7 @@ void ReachTask::begin(const BodyJoints& now,
   seed_ = seed;
   plans_ = 0;
   still_ = 0;
-  stage_ = Stage::There;
+  returns_ = false;
   legs_.clear();
   ask(way(), now, solids);
 }
@@ -44,7 +42,7 @@ void ReachTask::begin(const BodyJoints& now,
 ReachQuestion::Kind ReachTask::way() const {
   using Kind = ReachQuestion::Kind;
   if (goal_.carries) return Kind::Carry;
-  if (stage_ == Stage::Back) return Kind::Return;
+  if (returns_) return Kind::Return;
   return goal_.base_stays ? Kind::Last : Kind::Whole;
 }
 
@@ -110,13 +108,18 @@ void ReachTask::follow(const BodyJoints& now) {
 BodyCommand ReachTask::update(const BodyJoints& now, std::span<const Solid> solids, double dt) {
   BodyCommand rest{.state = FollowState::Waits};
   if (question_ || state_ == State::GivenUp || legs_.empty()) return rest;
-  if (stage_ == Stage::Path) return follow_path(now, solids, dt);
   BodyCommand command = follower_.update(now, solids, dt);
   if (command.state == FollowState::Arrived && leg_ + 1 < legs_.size()) {
     next_leg(now, solids);
     return {};
   }
-  if (command.state == FollowState::Arrived && go_on(now, solids)) return rest;
+  if (command.state == FollowState::Arrived && goal_.then && !returns_ && !goal_.carries) {
+    returns_ = true;
+    plans_ = 0;
+    legs_.clear();
+    ask(way(), now, solids);
+    return rest;
+  }
   if (command.state == FollowState::Arrived) {
     state_ = State::Arrived;
     still_ = 0;
@@ -131,54 +134,18 @@ BodyCommand ReachTask::update(const BodyJoints& now, std::span<const Solid> soli
   return command;
 }
 
-bool ReachTask::go_on(const BodyJoints& now, std::span<const Solid> solids) {
-  if (goal_.carries || stage_ == Stage::Back) return false;
-  still_ = 0;
-  if (stage_ == Stage::There && !goal_.path_W.empty()) {
-    stage_ = Stage::Path;
-    path_.begin(now, goal_.hand_W.linear(), goal_.path_W, goal_.base_stays);
-    return true;
-  }
-  if (!goal_.then) return false;
-  stage_ = Stage::Back;
-  plans_ = 0;
-  legs_.clear();
-  ask(way(), now, solids);
-  return true;
-}
-
-BodyCommand ReachTask::follow_path(const BodyJoints& now,
-                                   std::span<const Solid> solids,
-                                   double dt) {
-  const BodyCommand command = path_.update(now, solids, dt);
-  if (command.state == FollowState::Arrived) {
-    if (!go_on(now, solids)) state_ = State::Arrived;
-    return {.state = FollowState::Waits};
-  }
-  still_ = command.state == FollowState::Waits ? still_ + dt : 0;
-  state_ = still_ > 0 ? State::Waits : State::Goes;
-  if (still_ > kPathPatience) {
-    why_ = "The hand does not get on along its path: something is in the way, or it is too far.";
-    give_up();
-    return {.state = FollowState::Waits};
-  }
-  return command;
-}
-
 std::string ReachTask::words() const {
   switch (state_) {
     case State::Plans:
       return "The robot looks for a way.";
     case State::Goes:
-      if (stage_ == Stage::Path) return "The hand follows its path.";
       return "The robot " + std::string(name(legs_[leg_].kind)) + ".";
     case State::Waits:
       return "The robot waits: something is too near to go on.";
     case State::Arrived:
       if (goal_.carries) return "The robot is at its goal.";
-      if (stage_ == Stage::Back) return "The robot is back from where its hand has been.";
-      return stage_ == Stage::Path ? "The hand is at the end of its path."
-                                   : "The hand is at its goal.";
+      return returns_ ? "The robot is back from where its hand has been."
+                      : "The hand is at its goal.";
     case State::GivenUp:
       return why_;
   }

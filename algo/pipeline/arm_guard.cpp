@@ -38,7 +38,7 @@ double ArmGuard::room(const BodyJoints& q, std::span<const Solid> near, double t
   double least = self_clearance(body_, frames) - kOwnMargin;
   for (std::size_t k = 0; k < kBodyLinks; ++k) {
     const auto part = static_cast<BodyLink>(k);
-    const double margin = part == BodyLink::Base ? 0 : kMargin;
+    const double margin = part == BodyLink::Base ? kBaseMargin : kMargin;
     const LinkAxis link = link_axis(body_, frames, part);
     for (const Solid& solid : near) {
       least = std::min(least, nearest(link, solid.after(time)).distance - margin);

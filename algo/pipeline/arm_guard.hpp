@@ -23,6 +23,7 @@ inline constexpr Limit kArmNear{"arm", "The arm would come too near to something
 class ArmGuard {
  public:
   static constexpr double kMargin = 0.03;      // [m] of mast and arm to things
+  static constexpr double kBaseMargin = 0.01;  // [m] of the base to things
   static constexpr double kOwnMargin = 0.005;  // [m] of the arm to the robot itself
 
   explicit ArmGuard(const RobotSpec& spec);

@@ -1,8 +1,6 @@
 // server/run/arm_json.cpp: one reader and one writer for the file and for the spec.
 #include "server/run/arm_json.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 
@@ -71,31 +69,12 @@ void read_values(const JsonReader& in,
   if (in.has(key)) values = joint_values(in, key, range, unit);
 }
 
-algo::Vec3 place_from_json(const JsonReader& in) {
-  return {in.number("x", kCoordinate), in.number("y", kCoordinate), in.number("z", kCoordinate)};
-}
-
-algo::Vec3 path_point_from_json(const JsonReader& in) {
-  in.only({"x", "y", "z"});
-  return place_from_json(in);
-}
-
 json in_degrees(const algo::JointValues& radians) {
   json out = json::array();
   for (const double value : radians) {
     out.push_back(std::round(value / kRadiansPerDegree * 1e9) / 1e9);
   }
   return out;
-}
-
-/// `text` as a list of numbers with commas between them.
-json list_of(const std::string& text, const std::string& field) {
-  json list = json::parse('[' + text + ']', nullptr, false);
-  const auto is_number = [](const json& each) { return each.is_number(); };
-  if (list.is_discarded() || !std::ranges::all_of(list, is_number)) {
-    throw DocumentError(field, fmt::format("'{}' is no list of numbers such as 1,0.5,2", text));
-  }
-  return list;
 }
 
 }  // namespace
@@ -119,7 +98,8 @@ algo::SetHandGoal hand_goal_from_json(const JsonReader& in) {
   constexpr NumberRange kUnit{-1, 1};
   constexpr double kUnitError = 1e-3;  // of the length; a person may round
   algo::SetHandGoal goal;
-  goal.position_W = place_from_json(in);
+  goal.position_W = {
+      in.number("x", kCoordinate), in.number("y", kCoordinate), in.number("z", kCoordinate)};
   algo::Quaternion& a = goal.attitude_W;
   const bool given = in.has("qw") || in.has("qx") || in.has("qy") || in.has("qz");
   a = {in.number_or("qw", given ? 0 : 1, kUnit),
@@ -132,29 +112,8 @@ algo::SetHandGoal hand_goal_from_json(const JsonReader& in) {
   }
   if (in.has("arm_angle")) goal.arm_angle = algo::wrap_angle(in.number("arm_angle", {-1e3, 1e3}));
   goal.base_stays = in.flag_or("base_stays", false);
-  if (in.has("path")) {
-    in.each("path", algo::kMostPathPoints, [&](const json& point, const std::string& at) {
-      goal.path_W.push_back(path_point_from_json(JsonReader(point, at)));
-    });
-  }
   if (in.has("then")) goal.then = strict_goal(in.object("then"));
   return goal;
-}
-
-algo::SetHandGoal hand_goal_from_text(const std::string& text, const std::string& field) {
-  constexpr std::array kNames{"x", "y", "z", "qx", "qy", "qz", "qw"};
-  const json list = list_of(text, field);
-  if (list.size() != 3 && list.size() != kNames.size()) {
-    throw DocumentError(field, "must be x,y,z or x,y,z,qx,qy,qz,qw");
-  }
-  json goal = json::object();
-  for (std::size_t k = 0; k < list.size(); ++k) goal[kNames.at(k)] = list[k];
-  return hand_goal_from_json(JsonReader(goal, field));
-}
-
-algo::JointValues joints_from_text(const std::string& text, const std::string& field) {
-  const json joints = {{field, list_of(text, field)}};
-  return joint_values(JsonReader(joints, ""), field.c_str(), {-10, 10});
 }
 
 json to_json(const algo::SetHandGoal& goal) {
@@ -168,9 +127,6 @@ json to_json(const algo::SetHandGoal& goal) {
               {"qz", a.z}};
   if (goal.arm_angle) out["arm_angle"] = *goal.arm_angle;
   if (goal.base_stays) out["base_stays"] = true;
-  for (const algo::Vec3& p : goal.path_W) {
-    out["path"].push_back({{"x", p.x()}, {"y", p.y()}, {"z", p.z()}});
-  }
   if (goal.then) out["then"] = to_json(*goal.then);
   return out;
 }

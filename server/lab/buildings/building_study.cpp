@@ -104,7 +104,7 @@ End BuildingRun::end() const {
       return End::Collided;
     case Outcome::Stuck: {
       if (row["silent"] > 0) return End::Silent;
-      const double state = row["end_state"];
+      const auto state = static_cast<int>(row["end_state"]);
       const bool refused = state == algo::FullStripController::kNoWay ||
                            state == algo::FullStripController::kGoalTaken;
       return refused ? End::Refused : End::Blocked;

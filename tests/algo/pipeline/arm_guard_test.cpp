@@ -46,4 +46,27 @@ TEST(ArmGuard, CountsTheMotionThatAJointStillHas) {
   EXPECT_EQ(held.joint_rates, algo::Command{}.joint_rates);
 }
 
+/// Without a margin it came to a touch, by a millimetre in each tick.
+TEST(ArmGuard, ABaseThatIsDrivenAtAWallAgainAndAgainStaysOffIt) {
+  const algo::RobotSpec spec = guarded_spec();
+  const ArmGuard guard(spec);
+  algo::Solid wall;
+  wall.half = {0.05, 2};
+  wall.centre_W = {spec.radius + 0.10 + wall.half.x(), 0};
+  wall.top = 1.4;
+  const algo::ArmJoints folded = Eigen::Map<const algo::ArmJoints>(spec.arm->rest.data());
+  algo::Command ahead;
+  ahead.base.v = 0.3;
+  ahead.joints = algo::kArmJoints;
+  algo::MotionState state;
+  for (int tick = 0; tick < 400; ++tick) {
+    const algo::BodyJoints now = algo::body_joints(state.pose_W, folded);
+    const algo::Command passed = guard.limited(now, {.base = state.twist}, std::array{wall}, ahead);
+    state = advanced(state, passed.base, limits_of(spec), spec.period);
+  }
+  const double gap = 0.10 - state.pose_W.x;
+  EXPECT_GT(gap, 0.005);
+  EXPECT_LT(gap, 0.05);
+}
+
 }  // namespace

@@ -68,7 +68,6 @@ TEST(ArmFrame, AnArmComesBackFromItsFrameAndNoneCostsNothing) {
   t.ground_truth.emplace().touched = algo::BodyLink::Forearm;
   algo::SetHandGoal goal{.position_W = {1.0 / 3, 2, 3},
                          .attitude_W = {0.5, 0.5, 0.5, 0.5},
-                         .path_W = {{1, 2, 1.0 / 3}, {4, 5, 6}},
                          .arm_angle = 0.7,
                          .base_stays = true,
                          .then = algo::SetGoal{{1, 2}, 0.3}};
@@ -138,15 +137,6 @@ TEST_F(ArmRun, ARobotFetchesPastAPersonWhoWalks) {
   EXPECT_EQ(out.result.run.outcome, algo::Outcome::Reached) << out.result.run.reason;
   EXPECT_GT(out.room, 0);
   EXPECT_EQ(out.words, "The robot is back from where its hand has been.");
-}
-
-TEST_F(ArmRun, TheHandFollowsItsPathWhileTheBaseAvoidsAPost) {
-  const RunSpec spec = arm_spec("arm_follow");
-  const ArmOutcome out = run_arm(spec);
-  EXPECT_EQ(out.result.run.outcome, algo::Outcome::Reached)
-      << out.result.run.reason << ' ' << out.words;
-  EXPECT_EQ(out.words, "The hand is at the end of its path.");
-  EXPECT_GT(out.room, 0.05);
 }
 
 TEST_F(ArmRun, AGoalOutOfReachIsGivenUpInWords) {
