@@ -102,6 +102,7 @@ void FullStripController::forget_way() {
   planner_.reset();
   search_.reset();
   maneuver_.reset();
+  space_time_.reset();
   level_ = 0;
   no_way_ = false;
   goal_taken_ = false;
@@ -112,6 +113,7 @@ void FullStripController::forget_way() {
 void FullStripController::forget_attempts(const ControlInput& in) {
   search_.reset();
   maneuver_.reset();
+  space_time_.reset();
   back_until_ = -1;
   escape_until_ = -1;
   progress_W_ = in.odometry.pose.position();
@@ -315,10 +317,13 @@ std::optional<Twist2> FullStripController::give_way(const StageInput& stage,
   search.hull = &stage_.hull();
   search.spec = in.spec;
   search.tracks = &tracker_.moving();
+  search.standing = &tracker_.standing();
   search.lead = in.dt * static_cast<double>(under_way_.size());
   search.state = stage.state;
   search.limits = limits_;
-  if (!SpaceTimeSearch::needed(search, strip_)) return std::nullopt;
+  search.stamp = in.stamp;
+  search.looks_back = tracker_.looks_back();
+  if (!space_time_.needed(search, strip_)) return std::nullopt;
   // The farthest visible point of the strip.
   search.carrot_W = in.goal->position_W;
   if (!strip_.empty()) {
@@ -339,7 +344,7 @@ std::optional<Twist2> FullStripController::give_way(const StageInput& stage,
   way_since_ = in.stamp;
   state_ = space_time_.clear() ? kGivingWay : kCornered;
   if (space_time_.clear() && twist.v > 0.1) state_ = kFollowing;
-  return twist;
+  return advanced(search.state, twist, limits_, in.dt).twist;
 }
 
 Twist2 FullStripController::recover(const StageInput& stage, const ControlInput& in) {
