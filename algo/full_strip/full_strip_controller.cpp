@@ -44,6 +44,7 @@ void FullStripController::reset(const Pose2& start_W) {
   route_.reset();
   narrow_place_.reset();
   recovery_.reset();
+  giving_way_.reset();
   progress_.restart({0, 0}, 0);
   under_way_.reset();
   state_ = kNone;
@@ -53,6 +54,7 @@ void FullStripController::reset(const Pose2& start_W) {
 void FullStripController::forget_attempts(const ControlInput& in) {
   narrow_place_.reset();
   recovery_.reset();
+  giving_way_.reset();
   progress_.restart(in.odometry.pose.position(), in.stamp);
 }
 
@@ -161,13 +163,8 @@ StripCommand FullStripController::drive(const ControlInput& in, const Parameters
     progress_.excuse_progress(in.stamp);
     return {proven(turn_to(in.odometry.pose, *in.goal, parameters)), kNone};
   }
-  if (const auto command = giving_way_.next(stage,
-                                            stage_.hull(),
-                                            *in.spec,
-                                            senses_.tracker(),
-                                            in.goal->position_W,
-                                            under_way_.lead(in.dt),
-                                            weighed_)) {
+  if (const auto command = giving_way_.next(
+          stage, stage_.hull(), senses_.tracker(), in, under_way_.lead(in.dt), weighed_)) {
     narrow_place_.stop_driving();
     progress_.excuse_progress(in.stamp);
     progress_.excuse_place(in.stamp);

@@ -27,26 +27,29 @@ void aim(SpaceTimeInput& search, const StageInput& stage, double half_width) {
 
 std::optional<StripCommand> GivingWay::next(const StageInput& stage,
                                             const HullCheck& hull,
-                                            const RobotSpec& spec,
                                             const Tracker& tracker,
-                                            const Vec2& goal_W,
+                                            const ControlInput& in,
                                             double lead,
                                             Weighing& out) {
   SpaceTimeInput search;
   search.map = stage.map;
   search.hull = &hull;
-  search.spec = &spec;
+  search.spec = in.spec;
   search.tracks = &tracker.moving();
+  search.standing = &tracker.standing();
   search.lead = lead;
+  search.stamp = in.stamp;
   search.state = stage.state;
   search.limits = stage.limits;
-  if (!SpaceTimeSearch::needed(search, *stage.strip)) return std::nullopt;
-  search.carrot_W = goal_W;
+  search.looks_back = tracker.looks_back();
+  if (!search_.needed(search, *stage.strip)) return std::nullopt;
+  search.carrot_W = in.goal->position_W;
   aim(search, stage, hull.half_width());
   const Twist2 twist = search_.search(search, out);
   out.pass_W = search.carrot_W;
-  if (!search_.clear()) return StripCommand{twist, strip_state::kCornered};
-  return StripCommand{twist,
+  const Twist2 reached = advanced(stage.state, twist, stage.limits, in.dt).twist;
+  if (!search_.clear()) return StripCommand{reached, strip_state::kCornered};
+  return StripCommand{reached,
                       twist.v > kDrivesOn ? strip_state::kFollowing : strip_state::kGivingWay};
 }
 

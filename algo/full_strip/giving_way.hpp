@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "algo/controller.hpp"
 #include "algo/full_strip/space_time.hpp"
 #include "algo/full_strip/strip_state.hpp"
 #include "algo/full_strip/velocity_stage.hpp"
@@ -12,12 +13,12 @@ namespace algo {
 /// The strip gives the direction, the search in space and time the command.
 class GivingWay {
  public:
+  void reset() { search_.reset(); }
   /// Nothing if no track may come near. `lead` [s]: see SpaceTimeInput.
   std::optional<StripCommand> next(const StageInput& stage,
                                    const HullCheck& hull,
-                                   const RobotSpec& spec,
                                    const Tracker& tracker,
-                                   const Vec2& goal_W,
+                                   const ControlInput& in,
                                    double lead,
                                    Weighing& out);
 

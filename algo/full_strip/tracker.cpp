@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <tuple>
 
@@ -38,17 +39,19 @@ constexpr double kStands = 0.12;        // [m/s] below it, for kStandsFor, it st
 constexpr double kStandsFor = 1.0;      // [s]
 constexpr double kBody = 0.2;       // [m] radius of a body that may move before it has been seen to
 constexpr double kBodyBend = 0.04;  // [m] root mean square distance of its arc from a straight line
+constexpr double kCorner = 0.7;     // of the circle's residual: a corner with less fits better
 constexpr double kMemoryEvery = 0.09;  // [s] between two kept scans,
 constexpr double kMemoryLeast = 0.2;   // [s] least age of one to compare with,
 constexpr double kMemoryMore = 0.5;    // [s] and how much older than the track it may be
 constexpr double kBeyond = 0.2;        // [m] an earlier beam went on behind the present obstacle
 constexpr double kSame = 0.1;          // [m] within which an earlier hit is at the same place
 constexpr std::size_t kSolid = 8;      // beams of a cluster that may count as moving
-constexpr double kStout = 0.12;   // [m] and its radius: thinner things come and go in the filter
-constexpr double kAround = 0.15;  // [m] around a moving circle: its hits lie within
-constexpr double kCoast = 3.0;    // [s] a moving track lasts unseen
-constexpr double kForget = 0.4;   // [s] any other track
-constexpr int kEmpty = 3;         // scans that look through a track before it ends
+constexpr double kStout = 0.12;     // [m] and its radius: thinner things come and go in the filter
+constexpr double kAround = 0.15;    // [m] around a moving circle: its hits lie within
+constexpr double kCoast = 3.0;      // [s] a moving track lasts unseen
+constexpr double kForget = 0.4;     // [s] any other track
+constexpr double kLooksBack = 0.5;  // [s] for which a look backwards counts
+constexpr int kEmpty = 3;           // scans that look through a track before it ends
 
 /// [m] Root mean square distance of every `stride`th of the points from their own straight line.
 double bend(const std::vector<Vec2>& points_W,
@@ -68,6 +71,28 @@ double bend(const std::vector<Vec2>& points_W,
   const double half = spread.trace() / 2;
   const double least = half - std::sqrt(std::max(0.0, half * half - spread.determinant()));
   return std::sqrt(std::max(0.0, least));
+}
+
+/// [m] Root mean square distance of every `stride`th of the points from two straight lines that
+/// meet at the point farthest from the chord: a corner's outline.
+double off_corner(const std::vector<Vec2>& points_W,
+                  std::size_t first,
+                  std::size_t last,
+                  std::size_t stride) {
+  const Vec2 chord = (points_W[last] - points_W[first]).normalized();
+  std::size_t corner = first;
+  double farthest = 0;
+  for (std::size_t i = first; i <= last; i += stride) {
+    const double off = std::abs(cross(chord, points_W[i] - points_W[first]));
+    if (off <= farthest) continue;
+    farthest = off;
+    corner = i;
+  }
+  const auto before = static_cast<double>(corner - first);
+  const auto after = static_cast<double>(last - corner);
+  const double a = bend(points_W, first, corner, stride);
+  const double b = bend(points_W, corner, last, stride);
+  return std::sqrt((before * a * a + after * b * b) / (before + after));
 }
 
 /// [m] Spread of a track's radius after `hits` scans.
@@ -111,6 +136,9 @@ std::optional<std::size_t> cusp(const std::vector<Vec2>& points_W,
 
 Tracker::Tracker() {
   filters_.reserve(kMostFilters);
+  moving_.reserve(kMostFilters);
+  standing_.reserve(kMostFilters);
+  just_found_.reserve(kMostFilters);
   clusters_.reserve(256);
   pairs_.reserve(kMostFilters * 8);
 }
@@ -118,10 +146,16 @@ Tracker::Tracker() {
 void Tracker::reset() {
   filters_.clear();
   moving_.clear();
+  standing_.clear();
   just_found_.clear();
   std::ranges::fill(moving_beam_, std::uint8_t{0});
   now_ = 0;
   for (Memory& memory : memories_) memory.stamp = -1;
+  looked_back_at_ = -1;
+}
+
+bool Tracker::looks_back() const {
+  return looked_back_at_ >= 0 && now_ - looked_back_at_ < kLooksBack;
 }
 
 /// Groups neighbouring hits that lie close together.
@@ -213,7 +247,8 @@ void Tracker::fit(Cluster& c,
   // A body's centre lies behind its surface; otherwise it is a hollow.
   const bool bulges = (c.centre_W - sensor_W.position()).norm() > line.norm();
   c.round = bulges && c.residual < kRound && c.radius > kThinnest && c.radius < kThickest;
-  c.body = c.round && c.radius > kBody && bend(points_W, c.first, c.last, stride) > kBodyBend;
+  c.body = c.round && c.radius > kBody && bend(points_W, c.first, c.last, stride) > kBodyBend &&
+           off_corner(points_W, c.first, c.last, stride) > kCorner * c.residual;
 }
 
 /// Moves the filters to the time of a scan. Never to the run clock: the next scan would be older.
@@ -294,18 +329,19 @@ void Tracker::begin(const Cluster& c, double stamp) {
   f.slow_since = stamp;
   f.hits = 1;
   f.body = c.body;
+  f.person = c.body;
   filters_.push_back(f);
   if (f.body) just_found_.push_back({f.position_W, f.velocity_W, f.radius, 0, 0, false});
 }
 
 void Tracker::memorise(const LaserScan& scan, const Pose2& sensor_W, double stamp) {
-  angle_min_ = scan.angle_min;
-  angle_increment_ = scan.angle_increment;
   if (stamp - memories_[newest_].stamp < kMemoryEvery && memories_[newest_].stamp >= 0) return;
   newest_ = (newest_ + 1) % kMemories;
   Memory& memory = memories_[newest_];
   memory.stamp = stamp;
   memory.sensor_W = sensor_W;
+  memory.angle_min = scan.angle_min;
+  memory.angle_increment = scan.angle_increment;
   memory.ranges.resize(scan.size());
   for (std::size_t i = 0; i < scan.size(); ++i) {
     const bool measured = scan.status[i] != Beam::Invalid;
@@ -315,7 +351,7 @@ void Tracker::memorise(const LaserScan& scan, const Pose2& sensor_W, double stam
 
 /// True if an earlier scan looked well beyond the point.
 bool Tracker::free_in(const Memory& memory, const Vec2& point_W) const {
-  const double beam = beam_at(memory.sensor_W, point_W, angle_min_, angle_increment_);
+  const double beam = beam_at(memory.sensor_W, point_W, memory.angle_min, memory.angle_increment);
   if (!(beam >= 1 && beam < static_cast<double>(memory.ranges.size()) - 2)) return false;
   const auto b = static_cast<std::size_t>(std::lround(beam));
   const double far = (point_W - memory.sensor_W.position()).norm();
@@ -327,7 +363,7 @@ bool Tracker::free_in(const Memory& memory, const Vec2& point_W) const {
 
 /// True if an earlier scan hit something at the point.
 bool Tracker::hit_in(const Memory& memory, const Vec2& point_W) const {
-  const double beam = beam_at(memory.sensor_W, point_W, angle_min_, angle_increment_);
+  const double beam = beam_at(memory.sensor_W, point_W, memory.angle_min, memory.angle_increment);
   if (!(beam >= 1 && beam < static_cast<double>(memory.ranges.size()) - 2)) return false;
   const auto range =
       static_cast<double>(memory.ranges[static_cast<std::size_t>(std::lround(beam))]);
@@ -370,6 +406,7 @@ void Tracker::judge(Filter& f, const Cluster& c, const std::vector<Vec2>& points
   f.moving = stamp - f.born > kFound && speed > kMovingSpeed && speed > 1.5 * std::sqrt(f.vv) &&
              (f.position_W - f.born_at_W).norm() > kGone && c.last - c.first >= kSolid &&
              f.radius > kStout && changed(f, c, points_W);
+  f.person = f.person || f.moving;
   if (f.moving) {
     just_found_.push_back({f.position_W, f.velocity_W, f.radius, stamp - f.born, 0, true});
   }
@@ -393,6 +430,7 @@ void Tracker::update(const LaserScan& scan,
                      const std::vector<Vec2>& points_W) {
   const double stamp = scan.stamp;
   advance(stamp);
+  if (std::abs(scan.mount_R.heading) > std::numbers::pi / 2) looked_back_at_ = stamp;
   just_found_.clear();
   moving_beam_.assign(scan.size(), 0);
   memorise(scan, sensor_W, stamp);
@@ -419,10 +457,22 @@ void Tracker::update(const LaserScan& scan,
 
 void Tracker::publish(double stamp) {
   moving_.clear();
+  standing_.clear();
   for (const Filter& f : filters_) {
-    if (f.of_map()) continue;
+    if (f.of_map()) {
+      if (f.person) standing_.push_back({.position_W = f.position_W, .radius = f.radius});
+      continue;
+    }
     const Vec2 at_W = f.position_W + f.velocity_W * (stamp - now_);
-    moving_.push_back({at_W, f.velocity_W, f.radius, stamp - f.born, stamp - f.seen, f.moving});
+    const double lead = stamp - now_;
+    moving_.push_back({.position_W = at_W,
+                       .velocity_W = f.velocity_W,
+                       .radius = f.radius,
+                       .age = stamp - f.born,
+                       .unseen = stamp - f.seen,
+                       .moves = f.moving,
+                       .position_spread = std::sqrt(f.pp + 2 * lead * f.pv + lead * lead * f.vv),
+                       .velocity_spread = std::sqrt(f.vv)});
   }
 }
 

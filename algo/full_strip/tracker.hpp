@@ -15,11 +15,13 @@ namespace algo {
 /// An obstacle that moves, or may move.
 struct Track {
   Vec2 position_W{0, 0};
-  Vec2 velocity_W{0, 0};  // [m/s]
-  double radius = 0;      // [m]
-  double age = 0;         // [s] since it was first seen
-  double unseen = 0;      // [s] since it was last seen
-  bool moves = false;     // it was seen moving
+  Vec2 velocity_W{0, 0};       // [m/s]
+  double radius = 0;           // [m]
+  double age = 0;              // [s] since it was first seen
+  double unseen = 0;           // [s] since it was last seen
+  bool moves = false;          // it was seen moving
+  double position_spread = 0;  // [m] standard deviation along each axis
+  double velocity_spread = 0;  // [m/s] the same
 };
 
 /// A round body at least as thick as a person counts as possibly moving from its first scan on,
@@ -37,10 +39,14 @@ class Tracker {
   /// Predicts moving() at `stamp` [s, run clock], which is later than the last scan.
   void predict(double stamp) { publish(stamp); }
 
+  /// True if one of the last scans was taken by a scanner that faces backwards.
+  bool looks_back() const;
   /// True if beam `i` of the last scan hit an obstacle that moves or may move.
   bool on_moving(std::size_t i) const { return i < moving_beam_.size() && moving_beam_[i] != 0; }
   /// The obstacles that move or may move, at the time of the last update() or predict().
   const Recycled<Track>& moving() const { return moving_; }
+  /// Bodies in sight that have stood for a while: the map holds them, but they may begin to walk.
+  const Recycled<Track>& standing() const { return standing_; }
   /// The circles that the last update() began to count as moving: the map holds traces of them.
   const Recycled<Track>& just_found() const { return just_found_; }
 
@@ -68,6 +74,7 @@ class Tracker {
     int empty = 0;         // scans that looked through it
     bool moving = false;
     bool body = false;      // has not stood yet
+    bool person = false;    // a body, or it has moved
     double slow_since = 0;  // [s]
     bool of_map() const { return !moving && !body; }
   };
@@ -93,6 +100,7 @@ class Tracker {
   struct Memory {
     double stamp = -1;
     Pose2 sensor_W{};
+    double angle_min = 0, angle_increment = 1;  // [rad] of the scanner
     std::vector<float> ranges{};  // [m] 0 without a measurement, above range_max if free
   };
   void begin(const Cluster& c, double stamp);
@@ -109,12 +117,13 @@ class Tracker {
   std::vector<Pair> pairs_{};
   std::vector<std::uint8_t> moving_beam_{};
   Recycled<Track> moving_{};
+  Recycled<Track> standing_{};
   Recycled<Track> just_found_{};
   double now_ = 0;  // [s] of the filters' states: time of the last scan
   static constexpr std::size_t kMemories = 12;
   std::array<Memory, kMemories> memories_{};
   std::size_t newest_ = 0;
-  double angle_min_ = 0, angle_increment_ = 1;  // [rad] of the scanner
+  double looked_back_at_ = -1;  // [s] run clock; negative: never
 };
 
 }  // namespace algo

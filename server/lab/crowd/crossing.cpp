@@ -121,7 +121,8 @@ bool judge(Crossing& end,
            Crowd& crowd) {
   if (nearest.distance < kIntrusion) end.intrusion += period;
   if (nearest.distance < kPersonalSpace) end.personal += period;
-  if (nearest.distance > kTouch) return false;
+  // Bodies that touch within a tick may have bounced apart at its end.
+  if (nearest.distance > kTouch && !world.ground_truth()->collided) return false;
   if (speed >= kMovingSpeed) {
     end.moving_contact = true;
     return true;

@@ -33,6 +33,19 @@ struct Meeting {
     return in;
   }
 
+  /// The first command on the way to (8, 0) between a body at `at_W`, which moves with `velocity_W`
+  /// along the way, and another as far on the other side.
+  algo::Twist2 first(const Vec2& at_W, const Vec2& velocity_W) {
+    tracks.clear();
+    tracks.push_back({at_W, velocity_W, 0.25, 1, 0});
+    tracks.push_back({{at_W.x(), -at_W.y()}, velocity_W, 0.25, 1, 0});
+    algo::SpaceTimeInput in = input();
+    in.limits = {1.2, 2, 1.5, 6};
+    in.carrot_W = {8, 0};
+    search.reset();
+    return search.search(in, out);
+  }
+
   /// Drives to (8, 0) past an oncoming body beside its path, which turns across it at `turn_at`
   /// [s]. Returns the least clearance between them.
   double drive(double turn_at) {
@@ -45,6 +58,7 @@ struct Meeting {
       tracks.clear();
       tracks.push_back({at_W, velocity_W, 0.4, stamp, 0});
       algo::SpaceTimeInput in = input();
+      in.stamp = stamp;
       in.carrot_W = {8, 0};
       const algo::Twist2 twist = search.search(in, out);
       robot = advanced(robot, twist, in.limits, kStep);
@@ -69,6 +83,7 @@ TEST(SpaceTime, DoesNotFleeIntoAWall) {
       meeting.tracks.push_back(
           {here + 0.7 * algo::direction(bearing), -0.5 * algo::direction(bearing), 0.24, 0.5, 0});
       algo::SpaceTimeInput in = meeting.input();
+      in.stamp = k * kStep;
       in.carrot_W = {6, 0};
       const algo::Twist2 twist = meeting.search.search(in, meeting.out);
       meeting.robot = advanced(meeting.robot, twist, in.limits, kStep);
@@ -89,6 +104,77 @@ TEST(SpaceTime, KeepsClearanceToAnObstacleThatTurnsAcross) {
     Meeting meeting;
     EXPECT_GT(meeting.drive(turn_at), 0) << "turned after " << turn_at << " s";
   }
+}
+
+/// Somebody who walks by may turn towards the robot. It must then be able to brake.
+TEST(SpaceTime, DrivesSlowerNearSomebodyWhoMayTurn) {
+  Meeting near;
+  near.robot.twist.v = 1.2;
+  EXPECT_LT(near.first({2, 0.75}, {-1.2, 0}).v, 1.1);
+  Meeting far;
+  far.robot.twist.v = 1.2;
+  EXPECT_GT(far.first({2, 2.5}, {-1.2, 0}).v, 1.1);
+}
+
+TEST(SpaceTime, DrivesSlowerPastSomebodyWhoStandsAndMayBeginToWalk) {
+  algo::Recycled<algo::Track> standing;
+  standing.push_back({.position_W = {1.0, 0.75}, .radius = 0.25});
+  for (const bool known : {false, true}) {
+    Meeting meeting;
+    meeting.robot.twist.v = 1.2;
+    algo::SpaceTimeInput in = meeting.input();
+    in.limits = {1.2, 2, 1.5, 6};
+    in.carrot_W = {8, 0};
+    if (known) in.standing = &standing;
+    const double v = meeting.search.search(in, meeting.out).v;
+    EXPECT_EQ(v < 1.1, known) << v;
+  }
+}
+
+/// The oncoming body's measured velocity wavers: left and right are about equally good.
+TEST(SpaceTime, KeepsToItsMotionIfAnotherIsHardlyBetter) {
+  constexpr double kTick = 0.05;  // [s]
+  Meeting meeting;
+  meeting.robot.twist.v = 1.2;
+  int changes = 0;
+  algo::Twist2 last{};
+  for (int k = 0; k < 40; ++k) {
+    const double stamp = k * kTick;
+    const double wavers = k % 2 == 0 ? 0.02 : -0.02;
+    meeting.tracks.clear();
+    meeting.tracks.push_back({Vec2(7 - 1.2 * stamp, 0), {-1.2, wavers}, 0.25, stamp, 0});
+    algo::SpaceTimeInput in = meeting.input();
+    in.limits = {1.2, 2, 1.5, 6};
+    in.stamp = stamp;
+    in.carrot_W = {8, 0};
+    const algo::Twist2 twist = meeting.search.search(in, meeting.out);
+    meeting.robot = advanced(meeting.robot, twist, in.limits, kTick);
+    changes += twist != last ? 1 : 0;
+    last = twist;
+  }
+  EXPECT_LE(changes, 10);
+}
+
+/// It cannot get out of the way in time; then it must at least not drive.
+TEST(SpaceTime, IsAtRestWhenATouchCannotBeAvoided) {
+  Meeting meeting;
+  meeting.robot.twist.v = 0.6;
+  const Vec2 velocity_W(-2, 0);
+  Vec2 at_W(1.7, 0);
+  double stamp = 0;
+  for (; (at_W - meeting.robot.pose_W.position()).norm() > 0.3 + 0.25; stamp += kStep) {
+    meeting.tracks.clear();
+    meeting.tracks.push_back({at_W, velocity_W, 0.25, 1, 0});
+    algo::SpaceTimeInput in = meeting.input();
+    in.limits = {1.2, 2, 1.5, 6};
+    in.stamp = stamp;
+    in.carrot_W = {8, 0};
+    const algo::Twist2 twist = meeting.search.search(in, meeting.out);
+    meeting.robot = advanced(meeting.robot, twist, in.limits, kStep);
+    at_W += kStep * velocity_W;
+    ASSERT_LT(stamp, 3);
+  }
+  EXPECT_LT(std::abs(meeting.robot.twist.v), 0.05);
 }
 
 }  // namespace

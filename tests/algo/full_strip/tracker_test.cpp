@@ -2,7 +2,9 @@
 #include "algo/full_strip/tracker.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <numbers>
 #include <vector>
 
 #include "tests/algo/worlds.hpp"
@@ -83,6 +85,50 @@ TEST(Tracker, ABodyThatStandsBelongsToTheMap) {
   EXPECT_NE(watch.near(watch.world.circles[0].centre), nullptr);
 }
 
+TEST(Tracker, SomebodyWhoStandsMayBeginToWalk) {
+  Watch watch;
+  watch.world.circles = {{{3, 0}, 0.25}, {{2, 1}, 0.075}};
+  watch.run(2.0, [](double) {});
+  ASSERT_EQ(watch.tracker.standing().size(), 1U);  // the post is nobody
+  EXPECT_NEAR(watch.tracker.standing()[0].position_W.x(), 3, 0.05);
+  EXPECT_NEAR(watch.tracker.standing()[0].radius, 0.25, 0.05);
+}
+
+/// The beams of the rear scanner lie at other angles than those of the front one.
+TEST(Tracker, ScannersWithOtherBeamsKeepTheirOwnMemories) {
+  worlds::World world;
+  world.circles.push_back({{2, 0.6}, 0.15});  // too thin to count as a body at once
+  world.polygons.push_back({{-2, -3}, {-2, 3}, {-2.2, 3}, {-2.2, -3}});
+  const algo::Pose2 back{0, 0, std::numbers::pi};
+  algo::Tracker tracker;
+  for (int k = 0; k < 40; ++k) {
+    const bool rear = k % 2 == 1;
+    const algo::Pose2 sensor_W = rear ? back : algo::Pose2{};
+    algo::LaserScan scan;
+    worlds::scan_world(sensor_W, world, 8, scan);
+    if (rear) {
+      algo::LaserScan narrow;
+      narrow.resize(91);
+      narrow.angle_min = scan.angle(135);
+      narrow.angle_increment = scan.angle_increment;
+      narrow.range_max = scan.range_max;
+      for (std::size_t i = 0; i < narrow.size(); ++i) {
+        if (scan.status[i + 135] == algo::Beam::Ok) narrow.set_ok(i, scan.ranges[i + 135]);
+      }
+      scan = narrow;
+      scan.mount_R = back;
+    }
+    scan.stamp = k * kPeriod;
+    std::vector<Vec2> points_W(scan.size());
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      points_W[i] = scan.ranges[i] * algo::direction(scan.angle(i) + sensor_W.heading);
+    }
+    tracker.update(scan, sensor_W, points_W);
+  }
+  EXPECT_TRUE(tracker.looks_back());
+  EXPECT_TRUE(tracker.moving().empty());  // nothing moves
+}
+
 TEST(Tracker, PostsAndWallsBelongToTheMapAtOnce) {
   Watch watch;
   watch.world.circles.push_back({{2, 1}, 0.075});
@@ -90,6 +136,31 @@ TEST(Tracker, PostsAndWallsBelongToTheMapAtOnce) {
   watch.run(1.0, [](double) {});
   EXPECT_TRUE(watch.tracker.moving().empty());
   EXPECT_EQ(watch.beams_taken(), 0U);
+}
+
+/// The corner of a box or a jamb, seen from its side, fits a circle within the noise of a scan.
+TEST(Tracker, CornersBelongToTheMapAtOnce) {
+  for (const double side : {0.2, 0.25, 0.3, 0.35, 0.4}) {
+    for (double far = 1.0; far < 3.2; far += 0.5) {
+      Watch watch;
+      const Vec2 corner(far, 0);
+      watch.world.polygons.push_back({corner,
+                                      corner + side * algo::direction(0.785),
+                                      corner + side * Vec2(std::sqrt(2), 0),
+                                      corner + side * algo::direction(-0.785)});
+      watch.tick();
+      EXPECT_TRUE(watch.tracker.moving().empty()) << side << " m wide, " << far << " m away";
+    }
+  }
+}
+
+TEST(Tracker, ASlimPersonIsABodyFromTheFirstScan) {
+  for (double far = 1.0; far < 4.2; far += 0.5) {
+    Watch watch;
+    watch.world.circles.push_back({{far, 0.3}, 0.25});
+    watch.tick();
+    EXPECT_NE(watch.near({far, 0.3}), nullptr) << far << " m away";
+  }
 }
 
 TEST(Tracker, TwoPassingBodiesKeepTheirTracks) {

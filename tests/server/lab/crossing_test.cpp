@@ -88,5 +88,18 @@ TEST(CrowdCrossing, SomebodyWhoWalksIntoAStandingRobotIsAContactAtRestAndIsTaken
   EXPECT_GT(end.personal, end.intrusion);
 }
 
+/// Two bodies that meet within a tick have bounced apart at its end, and the robot moves then.
+TEST(CrowdCrossing, SomebodyWhoRunsIntoAStandingRobotIsAContactAtRest) {
+  for (const double speed : {1.0, 1.5, 2.0, 2.5}) {
+    const double walk = 5 / speed;  // [s]
+    const Recording square =
+        square_with("0 s 2.6 3\n2500 s 2.6 3\n" +
+                    fmt::format("500 w 1.2 0.5\n{:.0f} w 1.2 5.5\n", 500 + walk / kFrameTime));
+    const Crossing end = cross(square, way_of(square, 0), crosser(), Driver::Standing);
+    EXPECT_FALSE(end.moving_contact) << "at " << speed << " m/s";
+    EXPECT_EQ(end.contacts_at_rest, 1) << "at " << speed << " m/s";
+  }
+}
+
 }  // namespace
 }  // namespace server::crowd
