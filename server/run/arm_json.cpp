@@ -1,6 +1,8 @@
 // server/run/arm_json.cpp: one reader and one writer for the file and for the spec.
 #include "server/run/arm_json.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -77,6 +79,16 @@ json in_degrees(const algo::JointValues& radians) {
   return out;
 }
 
+/// `text` as a list of numbers with commas between them.
+json list_of(const std::string& text, const std::string& field) {
+  json list = json::parse('[' + text + ']', nullptr, false);
+  const auto is_number = [](const json& each) { return each.is_number(); };
+  if (list.is_discarded() || !std::ranges::all_of(list, is_number)) {
+    throw DocumentError(field, fmt::format("'{}' is no list of numbers such as 1,0.5,2", text));
+  }
+  return list;
+}
+
 }  // namespace
 
 algo::JointValues joint_values(const JsonReader& in,
@@ -114,6 +126,22 @@ algo::SetHandGoal hand_goal_from_json(const JsonReader& in) {
   goal.base_stays = in.flag_or("base_stays", false);
   if (in.has("then")) goal.then = strict_goal(in.object("then"));
   return goal;
+}
+
+algo::SetHandGoal hand_goal_from_text(const std::string& text, const std::string& field) {
+  constexpr std::array kNames{"x", "y", "z", "qx", "qy", "qz", "qw"};
+  const json list = list_of(text, field);
+  if (list.size() != 3 && list.size() != kNames.size()) {
+    throw DocumentError(field, "must be x,y,z or x,y,z,qx,qy,qz,qw");
+  }
+  json goal = json::object();
+  for (std::size_t k = 0; k < list.size(); ++k) goal[kNames.at(k)] = list[k];
+  return hand_goal_from_json(JsonReader(goal, field));
+}
+
+algo::JointValues joints_from_text(const std::string& text, const std::string& field) {
+  const json joints = {{field, list_of(text, field)}};
+  return joint_values(JsonReader(joints, ""), field.c_str(), {-10, 10});
 }
 
 json to_json(const algo::SetHandGoal& goal) {
