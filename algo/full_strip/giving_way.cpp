@@ -2,6 +2,7 @@
 #include "algo/full_strip/giving_way.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace algo {
 namespace {
@@ -47,7 +48,9 @@ std::optional<StripCommand> GivingWay::next(const StageInput& stage,
   aim(search, stage, hull.half_width());
   const Twist2 twist = search_.search(search, out);
   out.pass_W = search.carrot_W;
-  const Twist2 reached = advanced(stage.state, twist, stage.limits, in.dt).twist;
+  Twist2 reached = advanced(stage.state, twist, stage.limits, in.dt).twist;
+  // A base that lags behind its commands would brake too late if it were asked step by step.
+  if (std::abs(twist.v) < std::abs(reached.v)) reached.v = twist.v;
   if (!search_.clear()) return StripCommand{reached, strip_state::kCornered};
   return StripCommand{reached,
                       twist.v > kDrivesOn ? strip_state::kFollowing : strip_state::kGivingWay};
