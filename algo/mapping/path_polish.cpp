@@ -32,7 +32,7 @@ std::vector<Pose2> polish_path(std::span<const Pose2> path_W,
   ScanMatcher matcher;
   for (int pass = 0; pass < kPasses; ++pass) {
     const OccupancyMap map = drawn_along(polished_W, scans, settings);
-    for (std::size_t i = 0; i < polished_W.size(); ++i) {
+    for (std::size_t i = 1; i < polished_W.size(); ++i) {
       matcher.take(scans[i], settings.reach);
       polished_W[i] = matcher.match(map, polished_W[i], kPolishPrior).pose_W;
     }

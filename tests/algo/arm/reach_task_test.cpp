@@ -88,7 +88,7 @@ TEST(ReachTask, KeepsItsPlanWhereThereIsNoOther) {
   drive.run_until([&] { return drive.q[0] > 0.5; });
   // A gate shuts before the robot for longer than its patience.
   const algo::Vec2 ahead = algo::base_of(drive.q).position() + algo::Vec2(0.44, 0);
-  drive.scene.solids = {reach_scene::board(ahead, {0.05, 2.0}, 0, 1.6)};
+  drive.scene.solids = {reach_scene::board(ahead, {0.05, 30}, 0, 1.6)};
   drive.run_until([] { return false; }, 6);
   EXPECT_EQ(drive.task.words(), "The robot waits: something is too near to go on.");
   EXPECT_EQ(drive.task.plans(), 2);
