@@ -10,6 +10,7 @@ namespace algo {
 namespace strip_state {
 
 /// The state that the strip's words explain: ControlOutput::state.
+// NOLINTBEGIN(readability-identifier-naming): its users read them as constants of the controller.
 enum State : std::uint8_t {
   kNone,
   kFollowing,    // along the strip
@@ -23,6 +24,7 @@ enum State : std::uint8_t {
   kBlocked,      // no motion is free at present
   kGoalTaken,    // an obstacle stands on the goal; drives no farther
 };
+// NOLINTEND(readability-identifier-naming)
 
 }  // namespace strip_state
 

@@ -40,10 +40,12 @@ std::vector<double> lines(sim::Random& random, double low, double high, double l
 /// first tree has long ways without branches.
 template <typename Join>
 void join_all(const FloorPlan& plan, sim::Random& random, Join&& join) {
-  const auto count = static_cast<std::size_t>(plan.columns() * plan.rows());
+  const auto count =
+      static_cast<std::size_t>(plan.columns()) * static_cast<std::size_t>(plan.rows());
   std::vector<bool> joined(count);
   const auto index = [&](CellPlace c) {
-    return static_cast<std::size_t>(c.row * plan.columns() + c.column);
+    return static_cast<std::size_t>(c.row) * static_cast<std::size_t>(plan.columns()) +
+           static_cast<std::size_t>(c.column);
   };
   std::vector<CellPlace> way{{0, 0}};
   joined[0] = true;
@@ -198,8 +200,11 @@ FloorPlan spiral(double door_width, sim::Random& random) {
   const double pitch = pitch_of(door_width, random);
   const int side = std::min(cells_of(random.uniform(kLeast, 30), pitch), 15);
   FloorPlan plan = FloorPlan::uniform(side, side, pitch, door_width);
-  std::vector<bool> passed(static_cast<std::size_t>(side * side));
-  const auto index = [&](CellPlace c) { return static_cast<std::size_t>(c.row * side + c.column); };
+  std::vector<bool> passed(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
+  const auto index = [&](CellPlace c) {
+    return static_cast<std::size_t>(c.row) * static_cast<std::size_t>(side) +
+           static_cast<std::size_t>(c.column);
+  };
   CellPlace at{0, 0};
   passed[0] = true;
   std::size_t turn = 0;
