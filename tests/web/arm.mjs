@@ -81,9 +81,8 @@ test("the gizmo sends the hand round a post: one axis alone moves, the arm keeps
   const run = sent.run.id;
   const end = await until("the hand past the post", 120, session, (s) => ["arrived", "given_up"].includes(s.arm));
   assert.equal(end.arm, "arrived", `${end.what}. ${end.why}`);
-  await p.page.waitForTimeout(600);
+  await until("the page says so", 20, () => p.get("arm-state").innerText(), (words) => words.includes("Arrived"));
   await p.shot("arm-3d-arrived");
-  assert.match(await p.get("arm-state").innerText(), /Arrived/);
   assert.deepEqual(await p.accessibility(), []);
 
   // Every tick of the run kept every link clear.
