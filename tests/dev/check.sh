@@ -60,7 +60,7 @@ verb_fmt() {
 # ---- sanitizers and fuzzing -----------------------------------------------------------------------
 
 # Long drives and heavy loads, whose code shorter tests run as well. A sanitizer would make minutes of each.
-long_tests=(AppTest.ABatchOfTenThousand\* ArmInverse.EveryBranch\* ArmStudy.\* BodyFollower.Passes\*
+long_tests=(AppTest.ABatchOfTenThousand\* ArmInverse.EveryBranch\* ArmStudy.\* BodyFollower.Passes\* BuildingStudy.RunsTheChosen\*
   BodyStrip.TheArmYields\* Compare.TheBlindOne\* Determinism.SeveralRobots\*
   CrowdCrossing.{TheSame,SomebodyWho}\* FleetRobot.{EachRobot,SoItDoes}\* GroundCourses.ARobotClimbs\* GroundDrive.RefusesSteps\* MapData.\*
   MasudaStudy.{BandsCanFail,DocumentsName,DownwardSlopes,HasTheLines,PrintedRules}\*
