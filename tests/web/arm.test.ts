@@ -1,5 +1,5 @@
 // tests/web/arm.test.ts: the arm on the page: where its links are, poses in the words of a person, the handles of the
-// gizmo, what frames bring, what is drawn, told and asked, and that undo loses nobody's goal.
+// gizmo, the fields of a frame, the marks of the scene, cards and requests, and undo beside another person's goal.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
