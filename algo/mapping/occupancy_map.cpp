@@ -48,6 +48,11 @@ void OccupancyMap::hit(const Vec2& point_W) {
   tally.y += share * (static_cast<float>(off.y()) - tally.y);
 }
 
+void OccupancyMap::mark_free(const Vec2& p_W) {
+  constexpr std::uint16_t kFreePasses = 4;
+  open(cell_of(p_W)).passes = kFreePasses;
+}
+
 void OccupancyMap::insert(const LaserScan& scan, const Pose2& sensor_W, double reach) {
   const Vec2 from_W = sensor_W.position();
   for (std::size_t i = 0; i < scan.size(); ++i) {

@@ -44,6 +44,10 @@ class OccupancyMap {
   /// Enters the Ok beams of `scan` up to `reach` [m], taken by a scanner at `sensor_W`.
   void insert(const LaserScan& scan, const Pose2& sensor_W, double reach);
 
+  /// Makes the cell of `p_W` a wall, or free, as a map read from a file says.
+  void mark_wall(const Vec2& p_W) { hit(p_W); }
+  void mark_free(const Vec2& p_W);
+
   /// Calls `see(point_W)` for each occupied cell of the square of half edge `reach` [m] about
   /// `p_W`, with the mean of its hits.
   template <typename See>

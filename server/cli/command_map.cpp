@@ -9,6 +9,7 @@
 #include "server/cli/pool_options.hpp"
 #include "server/lab/mapping/long_building.hpp"
 #include "server/lab/mapping/map_study.hpp"
+#include "server/run/map_file.hpp"
 #include "server/run/text_file.hpp"
 
 namespace server {
@@ -20,6 +21,7 @@ struct MapCommand {
   std::string simulate{};
   std::string relations{};
   std::string poses{};
+  std::string map{};
   std::string out{};
   std::string markdown{};
   bool as_json = false;
@@ -38,6 +40,7 @@ void refuse_several(const MapCommand& command) {
     throw std::runtime_error("--out takes the map of one log; --markdown those of several");
   }
   if (!command.relations.empty()) throw std::runtime_error("--relations belong to one log");
+  if (!command.map.empty()) throw std::runtime_error("--map takes the map of one log");
   if (!command.poses.empty()) throw std::runtime_error("--poses takes the path of one log");
 }
 
@@ -52,7 +55,8 @@ int execute(MapCommand command) {
   if (!command.simulate.empty()) return simulate(command);
   if (command.logs.empty()) throw std::runtime_error("map needs a LOG, or --simulate FILE");
   refuse_several(command);
-  const bool wants_path = !command.relations.empty() || !command.poses.empty();
+  const bool wants_path =
+      !command.relations.empty() || !command.poses.empty() || !command.map.empty();
   command.options.match = command.options.match || wants_path;
   std::vector<mapping::MapStudy> studies;
   {
@@ -70,6 +74,10 @@ int execute(MapCommand command) {
   }
   if (!command.out.empty()) write_picture(studies.front(), command.out);
   if (!command.poses.empty()) write_poses(studies.front(), command.poses);
+  if (!command.map.empty()) {
+    const mapping::MapStudy& study = studies.front();
+    write_map(mapping::map_along(study.log, first_path(study)), command.map);
+  }
   if (!command.markdown.empty()) write_markdown(studies, command.markdown);
   if (command.as_json) {
     fmt::print("{}\n", to_json(studies).dump(2));
@@ -103,6 +111,12 @@ void add_map_command(Command app, int& status) {
   map.add_option("--poses",
                  command->poses,
                  "Write the matched path of the first seed: lines of stamp, x, y [m], theta [rad]")
+      .check(refuse_folder)
+      .type_name("FILE");
+  map.add_option("--map",
+                 command->map,
+                 "Write the map of the matched path as a YAML file of map_server, its picture "
+                 "beside it")
       .check(refuse_folder)
       .type_name("FILE");
   map.add_option("--odometry-scale",
