@@ -1,4 +1,4 @@
-// algo/mapping/loop_search.cpp: a pyramid of grids, and branch and bound over it.
+// algo/mapping/loop_search.cpp: branch and bound over a pyramid of walls.
 #include "algo/mapping/loop_search.hpp"
 
 #include <algorithm>
@@ -9,77 +9,22 @@
 namespace algo {
 namespace {
 
-constexpr double kSearchCell = 0.1;         // [m]
-constexpr std::size_t kLevels = 6;          // the coarsest looks at 2^5 cells at once
-constexpr int kApron = 1 << (kLevels - 1);  // cells before the first wall that coarse levels need
-constexpr std::uint8_t kOnWall = 255;
-constexpr std::uint8_t kBesideWall = 170;
+constexpr double kSearchCell = 0.1;             // [m]
+constexpr std::size_t kLevels = 6;              // the coarsest looks at 2^5 cells at once
 constexpr double kFarPoint = 12;                // [m] at which a turn step moves a point by a cell
 constexpr std::size_t kMostBranches = 400'000;  // opened by one search
 
 }  // namespace
 
-LoopSearch::LoopSearch(const Submap& walls) {
-  fill(walls);
-  for (std::size_t height = 1; height < kLevels; ++height) {
-    const int half = 1 << (height - 1);
-    const std::vector<std::uint8_t>& below = levels_.back();
-    std::vector<std::uint8_t> wide(below.size(), 0);
-    const auto width = static_cast<std::size_t>(columns_);
-    for (int row = 0; row < rows_; ++row) {
-      const std::size_t here = static_cast<std::size_t>(row) * width;
-      const std::size_t above = static_cast<std::size_t>(std::min(row + half, rows_ - 1)) * width;
-      for (int column = 0; column < columns_; ++column) {
-        const auto left = static_cast<std::size_t>(column);
-        const auto right = static_cast<std::size_t>(std::min(column + half, columns_ - 1));
-        wide[here + left] = std::max(std::max(below[here + left], below[here + right]),
-                                     std::max(below[above + left], below[above + right]));
-      }
-    }
-    levels_.push_back(std::move(wide));
-  }
-}
-
-void LoopSearch::fill(const Submap& walls) {
-  Vec2 low(0, 0);
-  Vec2 high(0, 0);
-  bool first = true;
-  for (const Eigen::Vector2f& wall : walls.walls()) {
-    const Vec2 p = wall.cast<double>();
-    low = first ? p : low.cwiseMin(p).eval();
-    high = first ? p : high.cwiseMax(p).eval();
-    first = false;
-  }
-  corner_ = low - Vec2::Constant(kSearchCell * (kApron + 1));
-  const Vec2 size = (high - corner_) / kSearchCell;
-  columns_ = static_cast<int>(size.x()) + 3;
-  rows_ = static_cast<int>(size.y()) + 3;
-  std::vector<std::uint8_t>& cells =
-      levels_.emplace_back(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0);
-  for (const Eigen::Vector2f& wall : walls.walls()) {
-    const Vec2 off = (wall.cast<double>() - corner_) / kSearchCell;
-    const int column = static_cast<int>(off.x());
-    const int row = static_cast<int>(off.y());
-    for (int dj = -1; dj <= 1; ++dj) {
-      for (int di = -1; di <= 1; ++di) {
-        std::uint8_t& cell = cells[cell_index(column + di, row + dj, columns_)];
-        cell = std::max(cell, di == 0 && dj == 0 ? kOnWall : kBesideWall);
-      }
-    }
-  }
-}
-
-std::uint8_t LoopSearch::level(std::size_t height, int column, int row) const {
-  if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return 0;
-  return levels_[height][cell_index(column, row, columns_)];
-}
+LoopSearch::LoopSearch(const Submap& walls) : walls_(walls, kSearchCell, kLevels) {}
 
 double LoopSearch::score(const Turned& turned, std::size_t height, int x, int y) const {
   unsigned sum = 0;
   for (std::size_t k = 0; k < turned.columns.size(); ++k) {
-    sum += level(height, turned.columns[k] + x, turned.rows[k] + y);
+    sum += walls_.at(height, turned.columns[k] + x, turned.rows[k] + y);
   }
-  return sum / (static_cast<double>(kOnWall) * static_cast<double>(turned.columns.size()));
+  return sum /
+         (static_cast<double>(WallPyramid::kOnWall) * static_cast<double>(turned.columns.size()));
 }
 
 /// One search: the turned points, and the branches not yet looked at.
@@ -150,7 +95,7 @@ std::optional<FoundPose> LoopSearch::best(std::span<const Vec2> points,
     turned.heading = guess.heading + a * turn_step;
     const Pose2 at{search.corner.x(), search.corner.y(), turned.heading};
     for (const Vec2& point : points) {
-      const Vec2 off = (to_parent(at, point) - corner_) / kSearchCell;
+      const Vec2 off = walls_.cells_to(to_parent(at, point));
       turned.columns.push_back(static_cast<int>(std::floor(off.x())));
       turned.rows.push_back(static_cast<int>(std::floor(off.y())));
     }

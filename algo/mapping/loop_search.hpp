@@ -3,12 +3,12 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "algo/mapping/submap.hpp"
+#include "algo/mapping/wall_pyramid.hpp"
 #include "algo/types.hpp"
 
 namespace algo {
@@ -24,9 +24,8 @@ struct FoundPose {
   double score = 0;  // 0 to 1: share of the points that lie on walls
 };
 
-/// Correlative search by branch and bound (Olson 2009; Hess et al. 2016). A pyramid of grids holds
-/// the best score that a point can reach within 2^h cells, so that most of the window is never
-/// looked at and yet the best pose of all is found.
+/// Correlative search by branch and bound (Olson 2009; Hess et al. 2016). The pyramid bounds the
+/// score, so that most of the window is never looked at and yet the best pose of all is found.
 class LoopSearch {
  public:
   explicit LoopSearch(const Submap& walls);
@@ -53,13 +52,9 @@ class LoopSearch {
   };
   struct Search;
 
-  void fill(const Submap& walls);
-  std::uint8_t level(std::size_t height, int column, int row) const;
   double score(const Turned& turned, std::size_t height, int x, int y) const;
 
-  int columns_ = 0, rows_ = 0;
-  Vec2 corner_{0, 0};
-  std::vector<std::vector<std::uint8_t>> levels_{};
+  WallPyramid walls_;
 };
 
 }  // namespace algo

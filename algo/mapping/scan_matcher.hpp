@@ -65,6 +65,7 @@ class ScanMatcher {
   void take(const LaserScan& scan, double reach);
   /// Takes points of R instead of a scan.
   void take(std::span<const Vec2> points_R);
+  std::span<const Vec2> points() const { return points_R_; }
   /// Mean of the points taken, in R.
   Vec2 middle() const;
 

@@ -34,6 +34,15 @@ Pose2 scaled(const Pose2& step, const OdometryScale& scale) {
           (1 + scale.turn) * step.heading};
 }
 
+Eigen::Matrix3d step_covariance(const Pose2& step) {
+  const double length = step.position().norm();
+  const double turn = std::abs(step.heading);
+  const double way_variance = kLeastWay * kLeastWay + kWayNoise * kWayNoise * length;
+  const double turn_variance = kLeastTurn * kLeastTurn + kTurnNoise * kTurnNoise * turn +
+                               kWayTurnNoise * kWayTurnNoise * length;
+  return Vec3(way_variance, way_variance, turn_variance).asDiagonal();
+}
+
 void OdometryChain::add(const Pose2& step) {
   const double c = std::cos(step_.heading);
   const double s = std::sin(step_.heading);
@@ -46,13 +55,8 @@ void OdometryChain::add(const Pose2& step) {
   Eigen::Matrix3d carry = Eigen::Matrix3d::Identity();
   carry(0, 2) = across.x();
   carry(1, 2) = across.y();
-  const double length = way.norm();
-  const double turn = std::abs(step.heading);
-  const double way_variance = kLeastWay * kLeastWay + kWayNoise * kWayNoise * length;
-  const double turn_variance = kLeastTurn * kLeastTurn + kTurnNoise * kTurnNoise * turn +
-                               kWayTurnNoise * kWayTurnNoise * length;
   covariance_ = carry * covariance_ * carry.transpose();
-  covariance_ += Vec3(way_variance, way_variance, turn_variance).asDiagonal();
+  covariance_ += step_covariance(step);
   turned_ += step.heading;
   step_ = compose(step_, step);
 }

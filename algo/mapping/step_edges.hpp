@@ -12,6 +12,9 @@ namespace algo {
 /// `step` of an odometry with these scale errors, corrected.
 Pose2 scaled(const Pose2& step, const OdometryScale& scale);
 
+/// Covariance of x, y and heading of one step of an odometry, beside that of its scale.
+Eigen::Matrix3d step_covariance(const Pose2& step);
+
 /// The odometry's steps from one pose of a graph to the next, their covariance, and how they
 /// change with the scale errors.
 class OdometryChain {
