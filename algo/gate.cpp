@@ -51,7 +51,10 @@ Hold gate(const GateInput& in, const Observation& observation, const Command& co
   }
   const bool fresh = in.scan_stamp && observation.stamp - *in.scan_stamp <= in.scan_timeout;
   if (!fresh) return in.blinded ? holds::kDazzled : holds::kStaleScan;
-  return in.hidden ? holds::kDazzled : Hold{};
+  if (in.hidden) return holds::kDazzled;
+  const auto& at = observation.map_pose;
+  if (!at || at->located() || in.by_hand) return Hold{};
+  return {holds::kNotLocated.name, holds::kNotLocated.what, sentence(at->fix)};
 }
 
 }  // namespace algo

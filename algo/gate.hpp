@@ -66,6 +66,9 @@ inline constexpr Hold kNoJoints{
     "no_joints",
     "Waiting for the arm",
     "It does not say how its joints stand. Without that nobody knows what it may touch."};
+/// algo::sentence() of the fix replaces the reason.
+inline constexpr Hold kNotLocated{
+    "not_located", "Not located", "Where the robot is on its map is not known."};
 inline constexpr Hold kNotFinite{
     "not_finite", "Holding still", "A sensor or the controller gave a value that is not a number."};
 /// The robot holds itself; observation.halt says why.

@@ -127,7 +127,8 @@ bool Intent::apply(const Request& request) {
                    ++arm_goals;
                    return true;
                  },
-                 [](const TakePlan&) { return false; }},
+                 [](const TakePlan&) { return false; },
+                 [](const SetInitialPose&) { return false; }},
       request);
 }
 

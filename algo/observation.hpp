@@ -9,12 +9,14 @@
 
 #include "algo/arm_spec.hpp"
 #include "algo/laser_scan.hpp"
+#include "algo/map_pose.hpp"
 #include "algo/recycled.hpp"
 #include "algo/types.hpp"
 
 namespace algo {
 
-/// Pose integrated from the encoders, and the twist over the last period.
+/// Pose integrated from the encoders, and the twist over the last period. A robot that knows a map
+/// corrects the pose by its scans, see MapPose.
 struct Odometry {
   double stamp = 0;  // [s] run clock
   Pose2 pose{};      // of R in W
@@ -147,6 +149,7 @@ struct Observation {
   std::optional<FloorRanges> floor{};   // only if new in this tick
   Recycled<ChannelReading> channels{};  // only those new in this tick
   std::optional<JointReading> joints{};
+  std::optional<MapPose> map_pose{};  // of a robot that knows a map
 
   bool bumper_pressed() const {
     for (const BumperReading& bumper : bumpers) {
@@ -167,6 +170,7 @@ struct Observation {
     floor.reset();
     channels.clear();
     joints.reset();
+    map_pose.reset();
   }
 };
 

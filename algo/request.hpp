@@ -121,6 +121,12 @@ struct Carry {
 struct TakePlan {
   bool operator==(const TakePlan&) const = default;
 };
+/// The robot is about here on the map that it knows: within 2 m and 0.5 rad. Without a pose it may
+/// be anywhere.
+struct SetInitialPose {
+  std::optional<Pose2> pose_W{};
+  bool operator==(const SetInitialPose&) const = default;
+};
 
 using Request = std::variant<SetGoal,
                              ClearGoal,
@@ -136,6 +142,7 @@ using Request = std::variant<SetGoal,
                              SetJoints,
                              SetHandGoal,
                              Carry,
-                             TakePlan>;
+                             TakePlan,
+                             SetInitialPose>;
 
 }  // namespace algo

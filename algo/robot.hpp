@@ -129,6 +129,14 @@ class Editing {
   virtual std::optional<std::string> edit(const Request& request) = 0;
 };
 
+/// A robot that knows a map and looks for its place on it. Call from the robot's thread only.
+class Locating {
+ public:
+  virtual ~Locating() = default;
+  /// Looks for the robot's place about the pose of `at`, or everywhere.
+  virtual void place(const SetInitialPose& at) = 0;
+};
+
 class Robot {
  public:
   virtual ~Robot() = default;
@@ -156,6 +164,8 @@ class Robot {
   virtual std::optional<GroundTruth> ground_truth() const { return std::nullopt; }
   /// Lists the obstacles that move by themselves. Overwrites `moved` but keeps its buffers.
   virtual void find_moved(Recycled<Moved>& moved) const { moved.clear(); }
+  /// Null if the robot knows no map.
+  virtual Locating* locating() { return nullptr; }
   /// Null if no sensor of the robot is published.
   virtual Publishing* publishing() { return nullptr; }
 };

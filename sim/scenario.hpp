@@ -80,6 +80,8 @@ struct Scenario {
   algo::Parameters parameters{};
   double time_limit = 0;  // [s] run clock for headless runs; 0 = 5 x straight line / v_max
   std::string log{};      // path of a CARMEN log to replay instead of a world
+  std::string map{};      // path of a map of map_server that the robot knows; empty: none
+  bool lost = false;      // where it begins on that map is not known to it
 };
 
 }  // namespace sim

@@ -50,6 +50,8 @@ double nearest_distance(const Scene& scene) {
   return std::isfinite(least) ? least : scene.scan.range_max;
 }
 
+constexpr const char* kNotFound =
+    "Where the robot is on the map is not known: give an initial pose.";
 constexpr const char* kNoArm = "This robot has no arm.";
 constexpr double kUnitError = 1e-3;  // of a quaternion's length
 
@@ -109,6 +111,7 @@ void Pipeline::reset(const Pose2& start_W) {
   tilt_stamp_.reset();
   blinded_ = false;
   clearance_ = 0;
+  map_pose_.reset();
   joystick_ticks_ = 0;
   driver_ = behaviours::kRest;
   std::ranges::fill(under_way_, Twist2{});
@@ -131,6 +134,9 @@ std::optional<std::string> Pipeline::refusal(const Request& request) const {
   if (const auto* list = std::get_if<SetGoals>(&request)) return refusal_of(*list);
   if (const auto* joints = std::get_if<SetJoints>(&request)) return refusal_of(*joints);
   if (const auto* hand = std::get_if<SetHandGoal>(&request)) return refusal_of(*hand);
+  const auto* at = std::get_if<SetInitialPose>(&request);
+  if (at != nullptr && at->pose_W && !finite(*at->pose_W))
+    return "The pose must be finite numbers.";
   if (const auto* carry = std::get_if<Carry>(&request)) {
     return arm_ == nullptr ? kNoArm : refusal_of(carry->goal);
   }
@@ -155,6 +161,7 @@ std::optional<std::string> Pipeline::refusal_of(const SetGoal& goal) const {
   const bool finite = goal.position_W.allFinite() && std::isfinite(goal.heading.value_or(0));
   if (!finite) return "The goal must be finite numbers.";
   if (!spec_.drives) return "This robot only replays a log; it cannot be sent to a goal.";
+  if (map_pose_ && !map_pose_->located()) return kNotFound;
   return std::nullopt;
 }
 
@@ -210,6 +217,7 @@ void Pipeline::look(Telemetry& t) {
   if (joystick_ticks_ > 0) --joystick_ticks_;
   for (const Request& request : t.requests) apply(request);
 
+  begin_anew_where_found(t.observation);
   sense(t);     // filter the newest scan, find the nearest return of each side
   sequence(t);  // take the next goal where one is reached
 }
@@ -240,6 +248,16 @@ void Pipeline::apply(const Request& request) {
     joystick_ticks_ = static_cast<std::uint64_t>(
         std::ceil(intent_.parameters[algo::kJoystickTimeout] / spec_.period));
   }
+}
+
+/// A robot that was located anew may have jumped: what behaviours remember lies elsewhere.
+void Pipeline::begin_anew_where_found(const Observation& observation) {
+  const bool moved =
+      map_pose_ && observation.map_pose && map_pose_->epoch != observation.map_pose->epoch;
+  map_pose_ = observation.map_pose;
+  if (!moved) return;
+  coordinator_.reset(observation.odometry.pose);
+  sensing_.reset();
 }
 
 void Pipeline::sense(Telemetry& t) {
@@ -299,7 +317,8 @@ void Pipeline::show_nearest(Telemetry& t) const {
 }
 
 void Pipeline::sequence(Telemetry& t) {
-  t.mission = sequencer_.update(t.observation.odometry.pose, intent_);
+  const bool lost = map_pose_ && !map_pose_->located();  // it may seem to be at the goal
+  t.mission = lost ? sequencer_.mission() : sequencer_.update(t.observation.odometry.pose, intent_);
   t.goal = intent_.goal;
   t.goals_ahead.clear();
   for (const SetGoal& goal : intent_.goals_ahead) t.goals_ahead.push_back(goal);

@@ -77,6 +77,7 @@ class Pipeline {
   std::optional<std::string> refusal_of(const SetHandGoal& hand) const;
   void apply(const Request& request);
   void notice_ramp(const Request& edit);
+  void begin_anew_where_found(const Observation& observation);
   void sense(Telemetry& t);
   void sense_sonar(Telemetry& t);
   void sequence(Telemetry& t);
@@ -105,6 +106,7 @@ class Pipeline {
   bool blinded_ = false;                // the newest scan is blinded
   std::optional<double> tilt_stamp_{};  // of the inclinometer's newest reading
   double clearance_ = 0;                // [m] of the newest scan
+  std::optional<MapPose> map_pose_{};   // the newest, of a robot that knows a map
   std::uint64_t joystick_ticks_ = 0;    // ticks for which the stick's value remains valid
   Name driver_ = behaviours::kRest;     // the behaviour that drove in the tick before
   std::vector<Twist2> under_way_{};     // commands sent that do not act yet, oldest first

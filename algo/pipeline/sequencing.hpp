@@ -39,6 +39,8 @@ class Sequencer {
   /// The state for this tick, before control; `pose_W` is the odometry's. A reached goal of
   /// `intent` gives way to the next; the robot arrives only at the last.
   Mission update(const Pose2& pose_W, Intent& intent);
+  /// The newest state.
+  Mission mission() const { return mission_; }
 
  private:
   void go_on(Intent& intent);  // to the next goal

@@ -8,6 +8,7 @@
 
 #include "server/run/arm_json.hpp"
 #include "server/run/json_reader.hpp"
+#include "server/run/map_robot.hpp"
 #include "server/run/paths.hpp"
 #include "server/run/robot_json.hpp"
 #include "server/run/scenario_json.hpp"
@@ -37,6 +38,20 @@ void RunFlags::add_arm_to(Command command) {
       .type_name("J1,...,J7");
 }
 
+void RunFlags::add_map_to(Command command) {
+  command
+      .add_option("--map",
+                  map,
+                  "The map that the robot drives by: a YAML file of map_server, its picture beside "
+                  "it (docs/maps.md)")
+      .existing_file()
+      .type_name("FILE");
+  command.add_flag(
+      "--lost",
+      overrides.lost,
+      "Where a simulated robot starts on its map is not known: it looks for its place");
+}
+
 RunOverrides RunFlags::resolved(const RobotLibrary& robots) const {
   RunOverrides out = overrides;
   out.controllers = controllers.catalogue();
@@ -49,6 +64,8 @@ RunOverrides RunFlags::resolved(const RobotLibrary& robots) const {
   }
   if (!hand_goal.empty()) out.hand_goal = hand_goal_from_text(hand_goal, "--hand-goal");
   if (!joints.empty()) out.joints = joints_from_text(joints, "--joints");
+  if (overrides.lost && map.empty()) throw DocumentError("--lost", "needs --map FILE");
+  if (!map.empty()) out.map = known_map(map);
   out.parameters = parameters_set(settings);
   return out;
 }

@@ -39,6 +39,7 @@ void add_compare_command(Command app, int& status);
 void add_crowd_command(Command app, int& status);
 void add_doctor_command(Command app, int& status);
 void add_lms200_command(Command app, int& status);
+void add_locate_command(Command app, int& status);
 void add_map_command(Command app, int& status);
 void add_merge_command(Command app, int& status);
 void add_report_command(Command app, int& status);
@@ -65,9 +66,12 @@ struct RunFlags {
   std::string robot{};  // --robot-model
   std::string hand_goal{};
   std::string joints{};
+  std::string map{};
   void add_to(Command command);
   /// --hand-goal and --joints, for a command that runs one scenario.
   void add_arm_to(Command command);
+  /// --map and --lost, for a command whose robot may drive by a map.
+  void add_map_to(Command command);
   /// Throws DocumentError for a malformed --set, LibraryError for an unknown robot, and
   /// std::exception with a sentence for a controller that cannot be.
   RunOverrides resolved(const RobotLibrary& robots = own_robots()) const;

@@ -125,6 +125,7 @@ void add_run_command(Command app, int& status) {
       .required();
   options->flags.add_to(command);
   options->flags.add_arm_to(command);
+  options->flags.add_map_to(command);
   command.add_option("--out", options->out, "Also store the run in this database").type_name("DB");
   command.add_option("--pace", options->pace, "Times real time; 0 (default): as fast as it goes")
       .range(0.0, 1000.0);
@@ -142,6 +143,7 @@ void add_replay_command(Command app, int& status) {
   command.add_option(
       "--filter", options->flags.overrides.filter, "pseudomedian (default), median, lulu or none");
   add_set_option(command, options->flags.settings);
+  options->flags.add_map_to(command);
   command.add_option("--out", options->out, "Store the run in this database").type_name("DB");
   command
       .add_option("--pace",

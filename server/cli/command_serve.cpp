@@ -250,6 +250,7 @@ void add_serve_command(Command app, int& status) {
       .show_default();
   options->flags.add_to(command);
   options->flags.add_arm_to(command);
+  options->flags.add_map_to(command);
   command.callback([options, &status] {
     serve(*options);
     status = 0;

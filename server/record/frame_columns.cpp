@@ -34,7 +34,8 @@ std::string_view type_of(const algo::Request& request) {
       "set_joints",
       "set_hand_goal",
       "carry",
-      "take_plan"};
+      "take_plan",
+      "set_initial_pose"};
   static_assert(!kTypes.back().empty(), "every kind of request has its name");
   return kTypes[request.index()];
 }

@@ -198,6 +198,11 @@ algo::Request read_request(const fb::RequestBox& box) {
       if (carry->goal() == nullptr) throw WireError("A goal to carry to in the frame is empty.");
       return algo::Carry{read_goal(*carry->goal())};
     }
+    case fb::Request_SetInitialPose: {
+      const auto* at = box.request_as_SetInitialPose();
+      if (at->pose() == nullptr) return algo::SetInitialPose{};
+      return algo::SetInitialPose{from_wire(*at->pose())};
+    }
     case fb::Request_TakePlan:
       return algo::TakePlan{};
     default:
@@ -236,6 +241,19 @@ void read_line(const fb::LaserLine& line, algo::Observation& o) {
   for (unsigned i = 0; i < line.pixels()->size(); i += 2) {
     o.line.pixels.push_back({line.pixels()->Get(i), line.pixels()->Get(i + 1)});
   }
+}
+
+void read_map_pose(const fb::MapPose& in, algo::Observation& o) {
+  check_enum(in.fix(), fb::MapFix_MAX, "fix on the map");
+  o.map_pose = {.fix = static_cast<algo::MapFix>(in.fix()),
+                .places = in.places(),
+                .epoch = in.epoch(),
+                .wheels = in.wheels() == nullptr ? algo::Pose2{} : from_wire(*in.wheels()),
+                .xx = in.xx(),
+                .xy = in.xy(),
+                .yy = in.yy(),
+                .turn = in.turn(),
+                .fit = in.fit()};
 }
 
 void read_observation(const fb::Frame& f, algo::Observation& o) {
@@ -286,6 +304,7 @@ void read_observation(const fb::Frame& f, algo::Observation& o) {
                 read_joints(joints->positions()),
                 read_joints(joints->rates())};
   }
+  if (f.map_pose() != nullptr) read_map_pose(*f.map_pose(), o);
   if (f.channels() == nullptr) return;
   for (const fb::Reading* r : *f.channels()) {
     algo::ChannelReading& reading = o.channels.append();

@@ -188,6 +188,11 @@ struct RequestWriter {
   Written operator()(const algo::Carry& r) const {
     return {fb::Request_Carry, fb::CreateCarry(b, write_goal(b, r.goal)).Union()};
   }
+  Written operator()(const algo::SetInitialPose& r) const {
+    const fb::Pose2 pose = to_wire(r.pose_W.value_or(algo::Pose2{}));
+    return {fb::Request_SetInitialPose,
+            fb::CreateSetInitialPose(b, r.pose_W ? &pose : nullptr).Union()};
+  }
   Written operator()(const algo::TakePlan&) const {
     return {fb::Request_TakePlan, fb::CreateTakePlan(b).Union()};
   }
@@ -269,6 +274,22 @@ Offset<fb::Joints> write_reading(Builder& b, const algo::Observation& o) {
   out.add_rates(rates);
   if (o.joints->stamp != o.stamp) out.add_stamp(o.joints->stamp);
   return out.Finish();
+}
+
+Offset<fb::MapPose> write_map_pose(Builder& b, const algo::Observation& o) {
+  if (!o.map_pose) return 0;
+  const algo::MapPose& at = *o.map_pose;
+  const fb::Pose2 wheels = to_wire(at.wheels);
+  return fb::CreateMapPose(b,
+                           &wheels,
+                           at.xx,
+                           at.xy,
+                           at.yy,
+                           at.turn,
+                           at.fit,
+                           at.places,
+                           at.epoch,
+                           static_cast<fb::MapFix>(at.fix));
 }
 
 template <typename Numbers>
@@ -399,6 +420,7 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   const auto goals_ahead = write_structs<fb::Vec2f>(b, t.goals_ahead);
   const auto channels = write_channels(b, o);
   const auto reading = write_reading(b, o);
+  const auto map_pose = write_map_pose(b, o);
   const auto arm = write_arm(b, t.arm);
   const auto line = write_line(b, o.line);
   const auto rates =
@@ -417,6 +439,7 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   frame.add_news(news);
   frame.add_scans(scans);
   frame.add_sonar(sonar);
+  frame.add_map_pose(map_pose);
   frame.add_infrared(infrared);
   frame.add_bumpers(bumpers);
   frame.add_requests(requests);

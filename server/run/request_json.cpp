@@ -85,10 +85,17 @@ algo::Request request_from_json(const nlohmann::json& value) {
     in.only({"type", "x", "y", "heading"});
     return algo::Carry{goal_from_json(in)};
   }
+  if (type == "set_initial_pose") {
+    in.only({"type", "x", "y", "heading"});
+    const bool anywhere = !in.has("x") && !in.has("y") && !in.has("heading");
+    if (anywhere) return algo::SetInitialPose{};
+    in.number("heading");  // a default would be a guess
+    return algo::SetInitialPose{pose_from_json(in, 0)};
+  }
   in.fail("type",
           fmt::format("'{}' is unknown; known are set_goal, add_goal, set_goals, clear_goal, "
                       "add_obstacle, change_obstacle, move_obstacle, remove_obstacle, joystick, "
-                      "stop, set_parameter, set_joints, set_hand_goal, carry",
+                      "stop, set_parameter, set_joints, set_hand_goal, carry, set_initial_pose",
                       type));
 }
 

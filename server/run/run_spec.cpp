@@ -2,6 +2,7 @@
 #include "server/run/run_spec.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,6 +17,8 @@
 #include "server/run/hardware.hpp"
 #include "server/run/io_thread.hpp"
 #include "server/run/json_fields.hpp"
+#include "server/run/map_robot.hpp"
+#include "server/run/paths.hpp"
 #include "server/run/pose_json.hpp"
 #include "server/run/scenario_json.hpp"
 #include "sim/replay.hpp"
@@ -128,6 +131,20 @@ void choose_arm(sim::Scenario& scenario, const RunOverrides& overrides) {
   scenario.hand_goal = overrides.hand_goal;
 }
 
+std::shared_ptr<const KnownMap> choose_map(sim::Scenario& scenario, const RunOverrides& overrides) {
+  scenario.lost = scenario.lost || overrides.lost;
+  if (overrides.map) scenario.map = overrides.map->path;
+  if (overrides.map || scenario.map.empty()) return overrides.map;
+  if (!std::filesystem::path(scenario.map).has_parent_path()) {
+    throw DocumentError("map", "can be read only beside the scenario's file");
+  }
+  try {
+    return known_map(scenario.map);
+  } catch (const std::exception& error) {
+    throw DocumentError("map", without_folders(error.what()));
+  }
+}
+
 /// A robot without an arm makes no use of them.
 std::vector<algo::Obstacle> declared_of(const sim::Scenario& scenario) {
   return scenario.robot.arm ? scenario.obstacles : std::vector<algo::Obstacle>{};
@@ -179,6 +196,7 @@ RunSpec make_spec(sim::Scenario scenario,
   choose_arm(scenario, overrides);
   RunSpec spec;
   spec.controllers = overrides.controllers;
+  spec.map = choose_map(scenario, overrides);
   const algo::ControllerCatalogue& catalogue = controllers_of(spec);
   check_choices(
       catalogue, "", scenario.controller, scenario.filter, scenario.robot.sensors.has_laser());
@@ -203,14 +221,33 @@ const char* physics_of(const RunSpec& spec) {
   return spec.scenario.physics == sim::PhysicsKind::Bullet ? "bullet" : "kinematic";
 }
 
-std::unique_ptr<algo::Robot> make_robot(const RunSpec& spec) {
-  net::not_on_io_thread("Building a world");
+namespace {
+
+std::unique_ptr<algo::Robot> make_bare_robot(const RunSpec& spec) {
   if (spec.hardware) return make_run(*spec.hardware);
   if (!spec.scenario.log.empty()) return std::make_unique<sim::Replay>(spec.scenario.log);
   if (spec.scenario.robots.empty()) {
     return std::make_unique<sim::World>(spec.scenario, spec.seed);
   }
   return std::make_unique<FleetRobot>(spec.scenario, spec.seed, plans_of_others(spec));
+}
+
+/// Where the robot begins on its map. A log's odometry and a real robot's begin anywhere.
+std::optional<algo::Pose2> known_start(const RunSpec& spec) {
+  if (spec.scenario.lost || spec.hardware || !spec.scenario.log.empty()) return std::nullopt;
+  return spec.scenario.start;
+}
+
+}  // namespace
+
+std::unique_ptr<algo::Robot> make_robot(const RunSpec& spec) {
+  net::not_on_io_thread("Building a world");
+  std::unique_ptr<algo::Robot> robot = make_bare_robot(spec);
+  if (!spec.map) return robot;
+  if (!robot->spec().has_laser) {
+    throw DocumentError("map", "needs a robot with a scanner that looks ahead");
+  }
+  return std::make_unique<MapRobot>(std::move(robot), *spec.map, known_start(spec));
 }
 
 algo::PipelineConfig pipeline_config(const RunSpec& spec) {

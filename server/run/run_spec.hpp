@@ -18,6 +18,7 @@
 namespace server {
 
 struct Hardware;
+struct KnownMap;
 
 /// The same spec gives the same run, bit for bit. The scenario names controller, filter and
 /// physics.
@@ -29,6 +30,8 @@ struct RunSpec {
   std::optional<algo::Pose2> begin_W{};
   /// The controllers that the run may choose from; null: the built-in ones.
   std::shared_ptr<const algo::ControllerCatalogue> controllers{};
+  /// The scenario's map, read; null: none.
+  std::shared_ptr<const KnownMap> map{};
   /// Real devices to run on instead of a world. They outlive the run.
   std::shared_ptr<const Hardware> hardware{};
 };
@@ -52,6 +55,8 @@ struct RunOverrides {
   std::optional<algo::JointValues> joints{};
   /// As in RunSpec. Comes from the program's own command line, never from a document.
   std::shared_ptr<const algo::ControllerCatalogue> controllers{};
+  std::shared_ptr<const KnownMap> map{};  // likewise; in place of the scenario's
+  bool lost = false;                      // likewise; as in the scenario
 };
 /// Reads the optional fields controller, filter, physics, robot, seed, parameters. Throws
 /// DocumentError.

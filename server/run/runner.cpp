@@ -231,6 +231,10 @@ std::optional<std::string> Run::refusal_of(const algo::Request& request) {
 
 /// The robot carries out edits at once.
 std::optional<std::string> Run::carry_out(const algo::Request& request) {
+  if (const auto* at = std::get_if<algo::SetInitialPose>(&request)) {
+    if (robot_.locating() == nullptr) return "This robot knows no map: start it with --map FILE.";
+    robot_.locating()->place(*at);
+  }
   if (!algo::is_edit(request)) return std::nullopt;
   if (editing_ != nullptr) return editing_->edit(request);
   return arming_ != nullptr ? "This is real hardware: obstacles are put in its way by hand."

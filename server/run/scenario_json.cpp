@@ -1,6 +1,7 @@
 // server/run/scenario_json.cpp: one reader and one writer for each part of the document.
 #include "server/run/scenario_json.hpp"
 
+#include <filesystem>
 #include <set>
 
 #include <fmt/format.h>
@@ -52,6 +53,17 @@ void read_arm_goals(const JsonReader& in, sim::Scenario& scenario) {
   const JsonReader goal = in.object("hand_goal");
   goal.only(kHandGoalFields);
   scenario.hand_goal = hand_goal_from_json(goal);
+}
+
+/// A map lies beside the scenario's file; a name from the network is never a path.
+void read_map_name(const JsonReader& in, sim::Scenario& scenario) {
+  scenario.map = in.text_or("map", "");
+  const bool plain = scenario.map.find_first_of("/\\") == std::string::npos;
+  if (!scenario.map.empty() && (!plain || !scenario.map.ends_with(".yaml"))) {
+    in.fail("map", "must be the name of a .yaml file beside the scenario's");
+  }
+  scenario.lost = in.flag_or("lost", false);
+  if (scenario.lost && scenario.map.empty()) in.fail("lost", "needs a map to be lost on");
 }
 
 void read_choices(const JsonReader& in, sim::Scenario& scenario) {
@@ -116,7 +128,7 @@ sim::Scenario scenario_from_json(const json& document, const RobotLibrary& robot
            "infrared",   "sensors", "gyro",        "bumpers",      "encoders",      "localization",
            "controller", "filter",  "parameters",  "time_limit",   "waypoints",     "loop",
            "robots",     "vehicle", "line_camera", "inclinometer", "floor_sensors", "hand_goal",
-           "joints",     "carry"});
+           "joints",     "carry",   "map",         "lost"});
   sim::Scenario s;
   s.name = in.text("name", 64);
   if (!valid_name(s.name)) {
@@ -141,6 +153,7 @@ sim::Scenario scenario_from_json(const json& document, const RobotLibrary& robot
   read_arm_goals(in, s);
   read_choices(in, s);
   s.time_limit = in.number_or("time_limit", 0, {0.0, 1e6});
+  read_map_name(in, s);
   read_robots(in, robots, s);
   return s;
 }
@@ -166,6 +179,8 @@ json to_json(const sim::Scenario& s) {
   if (s.loop) out["loop"] = true;
   if (s.hand_goal) out["hand_goal"] = to_json(*s.hand_goal);
   if (s.carry) out["carry"] = true;
+  if (!s.map.empty()) out["map"] = std::filesystem::path(s.map).filename().string();
+  if (s.lost) out["lost"] = true;
   if (s.joints) out["joints"] = *s.joints;
   write_sensors(s.robot.sensors, out);
   if (s.localization == sim::Localization::Gyro) out["localization"] = "gyro";

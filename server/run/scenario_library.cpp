@@ -36,6 +36,13 @@ const EmbeddedDocument* find_embedded(const std::string& name) {
   return nullptr;
 }
 
+sim::Scenario with_map_in(const fs::path& folder, sim::Scenario scenario) {
+  if (!scenario.map.empty() && !folder.empty()) {
+    scenario.map = (fs::absolute(folder) / scenario.map).string();
+  }
+  return scenario;
+}
+
 sim::Scenario log_scenario(const fs::path& path) {
   sim::Scenario s;
   s.name = path.stem().string();
@@ -90,7 +97,7 @@ sim::Scenario ScenarioLibrary::load(const std::string& name) const {
     const fs::path own = own_ / (name + ".json");
     if (!own_.empty() && fs::is_regular_file(own, error)) {
       const std::string shown = own.filename().string();
-      return parse(read_file(own, shown), shown, robots_);
+      return placed(parse(read_file(own, shown), shown, robots_));
     }
     const fs::path log = logs_ / (name + ".log");
     if (!logs_.empty() && fs::is_regular_file(log, error)) return log_scenario(log);
@@ -99,6 +106,10 @@ sim::Scenario ScenarioLibrary::load(const std::string& name) const {
   for (const ScenarioEntry& entry : list()) known += (known.empty() ? "" : ", ") + entry.name;
   throw LibraryError(Kind::NotFound,
                      fmt::format("There is no scenario '{}'. Known are {}.", name, known));
+}
+
+sim::Scenario ScenarioLibrary::placed(sim::Scenario scenario) const {
+  return with_map_in(own_, std::move(scenario));
 }
 
 void ScenarioLibrary::save(const sim::Scenario& scenario) const {
@@ -142,7 +153,8 @@ void ScenarioLibrary::remove(const std::string& name) const {
 
 sim::Scenario ScenarioLibrary::from_file(const fs::path& path, const RobotLibrary& robots) {
   if (path.extension() == ".log") return log_scenario(path);
-  return parse(read_file(path, path.string()), path.string(), robots);
+  return with_map_in(fs::absolute(path).parent_path(),
+                     parse(read_file(path, path.string()), path.string(), robots));
 }
 
 }  // namespace server

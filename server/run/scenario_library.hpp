@@ -38,6 +38,8 @@ class ScenarioLibrary {
   bool has(const std::string& name) const;
   /// Throws LibraryError, or DocumentError when the file is invalid.
   sim::Scenario load(const std::string& name) const;
+  /// `scenario` from the network, with its map in the user's folder if it names one.
+  sim::Scenario placed(sim::Scenario scenario) const;
   /// Writes to the user's folder. Throws LibraryError on a built-in name or an unwritable folder.
   void save(const sim::Scenario& scenario) const;
   void remove(const std::string& name) const;

@@ -1,4 +1,5 @@
-// server/serve/bridge_topics.cpp: what clients publish: goals, edits, and the Twist of a driver.
+// server/serve/bridge_topics.cpp: what clients publish: goals, poses, edits, and the Twist of a
+// driver.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -35,6 +36,16 @@ algo::Request goal_from_pose(const json& message) {
   std::optional<double> heading;
   if (pose.has("orientation")) heading = yaw_of(pose.object("orientation"));
   return goal_at(pose.object("position"), heading);
+}
+
+/// geometry_msgs/PoseWithCovarianceStamped. How sure the sender is does not count.
+algo::Request initial_pose_from(const json& message) {
+  const JsonReader pose = JsonReader(message, "").object("pose").object("pose");
+  const JsonReader position = pose.object("position");
+  return request_from_json({{"type", "set_initial_pose"},
+                            {"x", position.number("x")},
+                            {"y", position.number("y")},
+                            {"heading", yaw_of(pose.object("orientation"))}});
 }
 
 /// geometry_msgs/PointStamped.
@@ -139,6 +150,9 @@ void Bridge::add_topics() {
   }
   hub_.on_publish("/clicked_point", [this](ClientId client, const json& message) {
     return hand_over(client, goal_from_point(message));
+  });
+  hub_.on_publish("/initialpose", [this](ClientId client, const json& message) {
+    return hand_over(client, initial_pose_from(message));
   });
   hub_.on_publish("/cmd_vel",
                   [this](ClientId client, const json& message) { return drive(client, message); });

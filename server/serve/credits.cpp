@@ -23,6 +23,8 @@ void credit(Session& session, const algo::Request& request, const std::string& w
     tell_deed(session, who, "set a goal");
   } else if (std::holds_alternative<algo::ClearGoal>(request)) {
     tell_deed(session, who, "cleared the goals");
+  } else if (std::holds_alternative<algo::SetInitialPose>(request)) {
+    tell_deed(session, who, "gave the robot's pose on the map");
   }
 }
 

@@ -7,6 +7,7 @@
 #include "server/run/arm_json.hpp"
 #include "server/run/hardware.hpp"
 #include "server/run/json_reader.hpp"
+#include "server/run/map_robot.hpp"
 #include "server/run/paths.hpp"
 #include "server/run/pose_json.hpp"
 #include "server/run/request_json.hpp"
@@ -53,6 +54,7 @@ json state_json(const Session& session) {
       {"viewers", s.viewers},
       {"by", by_json(session)},
       {"driving", driving_json(session)},
+      {"map", s.spec.map ? json(s.spec.map->name) : json(nullptr)},
       {"emulated", s.spec.hardware && s.spec.hardware->emulated},
   };
   if (s.asked.goal) out["goal"] = to_json(*s.asked.goal);
@@ -79,6 +81,21 @@ json state_json(const Session& session) {
   return out;
 }
 
+namespace {
+
+json to_json(const algo::MapPose& at) {
+  return {{"state", algo::name(at.fix)},
+          {"why", algo::sentence(at.fix)},
+          {"places", at.places},
+          {"xx", at.xx},
+          {"xy", at.xy},
+          {"yy", at.yy},
+          {"turn", at.turn},
+          {"fit", at.fit}};
+}
+
+}  // namespace
+
 json session_json(const Session& session) {
   json out = state_json(session);
   if (!session.newest()) return out;
@@ -87,6 +104,7 @@ json session_json(const Session& session) {
   out["tick"] = t.tick;
   out["stamp"] = t.observation.stamp;
   out["pose"] = {{"x", pose.x}, {"y", pose.y}, {"heading", pose.heading}};
+  if (const auto& at = t.observation.map_pose) out["fix"] = to_json(*at);
   out["command"] = {{"v", t.command.base.v}, {"omega", t.command.base.omega}};
   out["clearance"] = t.clearance;
   out["mission"] = algo::name(t.mission);

@@ -25,6 +25,21 @@ TEST_F(GateTest, PassesACommandWithAFreshScan) {
   EXPECT_EQ(gate(input, observation, command), Hold{});
 }
 
+TEST_F(GateTest, HoldsARobotThatIsLostOnItsMapUnlessAPersonDrives) {
+  MapPose& at = observation.map_pose.emplace();
+  for (const MapFix fix : {MapFix::Searching, MapFix::Nowhere, MapFix::NotUnique, MapFix::Unsure}) {
+    at.fix = fix;
+    const Hold hold = gate(input, observation, command);
+    EXPECT_EQ(hold, holds::kNotLocated);
+    EXPECT_EQ(hold.why, sentence(fix));
+  }
+  input.by_hand = true;
+  EXPECT_EQ(gate(input, observation, command), Hold{});
+  input.by_hand = false;
+  at.fix = MapFix::Located;
+  EXPECT_EQ(gate(input, observation, command), Hold{});
+}
+
 TEST_F(GateTest, HoldsWhenTheScanIsStaleOrNeverCame) {
   input.scan_stamp = 9.79;  // 0.21 s old
   EXPECT_EQ(gate(input, observation, command), holds::kStaleScan);

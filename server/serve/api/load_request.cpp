@@ -3,6 +3,7 @@
 
 #include "server/run/hardware.hpp"
 #include "server/run/json_reader.hpp"
+#include "server/run/map_robot.hpp"
 #include "server/run/pose_json.hpp"
 #include "server/run/scenario_json.hpp"
 #include "server/serve/api/api.hpp"
@@ -30,7 +31,14 @@ sim::Scenario scenario_to_load(const ScenarioLibrary& library,
   anew.filter = now.filter;
   anew.physics = now.physics;
   anew.parameters = now.parameters;
+  anew.map = now.map;
+  anew.lost = now.lost;
   return anew;
+}
+
+/// The document of a session's own world names its map without the folder.
+bool same_map(const sim::Scenario& scenario, const RunSpec& now) {
+  return now.map != nullptr && scenario.map == now.map->name;
 }
 
 }  // namespace
@@ -61,8 +69,10 @@ RunSpec spec_to_load(const ScenarioLibrary& library, LoadRequest asked, const Ru
   const bool same_world = !asked.name && !asked.document;
   asked.overrides.controllers = now.controllers;
   if (same_world && !asked.overrides.seed) asked.overrides.seed = now.seed;
-  RunSpec spec =
-      make_spec(scenario_to_load(library, asked, now.scenario), asked.overrides, library.robots());
+  sim::Scenario scenario = scenario_to_load(library, asked, now.scenario);
+  if (same_world || same_map(scenario, now)) asked.overrides.map = now.map;
+  if (!asked.overrides.map) scenario = library.placed(std::move(scenario));
+  RunSpec spec = make_spec(std::move(scenario), asked.overrides, library.robots());
   spec.begin_W = asked.begin_W;
   return spec;
 }
@@ -79,7 +89,9 @@ bool load_from_json(ApiContext& context,
           "cannot be loaded: this session drives real hardware. Open another for simulation");
     }
     if (asked.begin_W) throw DocumentError("begin", "cannot be chosen: this robot is real");
-    const auto plan = [hardware, overrides = asked.overrides] {
+    RunOverrides overrides = asked.overrides;
+    overrides.map = session.session().state().spec.map;
+    const auto plan = [hardware, overrides] {
       return [hardware, overrides] { return hardware_spec(hardware, overrides); };
     };
     return session.loader().load(plan, std::move(done));

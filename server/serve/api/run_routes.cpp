@@ -47,7 +47,8 @@ RepeatedRun repeated_run_from_json(const ApiContext& context, const json& body) 
   RunOverrides overrides = overrides_from_json(body);
   overrides.controllers = context.first.controllers;
   RepeatedRun asked;
-  asked.spec = make_spec(std::move(scenario), overrides, context.library.robots());
+  asked.spec =
+      make_spec(context.library.placed(std::move(scenario)), overrides, context.library.robots());
   asked.repeats = static_cast<std::uint32_t>(in.whole_or("repeats", 1, kMaxRepeats));
   if (asked.repeats == 0) in.fail("repeats", "must be at least 1");
   asked.pace = pace_from_json(body, "pace", 0);
@@ -112,10 +113,11 @@ void resume_run(ApiContext& context,
   RunOverrides overrides;
   overrides.seed = row->what.seed;
   overrides.controllers = context.first.controllers;
-  RunSpec spec = make_spec(document.value("source", "") == "replay"
-                               ? context.library.load(row->what.scenario)
-                               : scenario_from_json(document.at("scenario")),
-                           overrides);
+  RunSpec spec =
+      make_spec(document.value("source", "") == "replay"
+                    ? context.library.load(row->what.scenario)
+                    : context.library.placed(scenario_from_json(document.at("scenario"))),
+                overrides);
   const bool taken =
       context.queue.resume(run,
                            std::move(spec),

@@ -35,7 +35,8 @@ json robots_json(const RobotLibrary& robots) {
 }  // namespace
 
 void keep_scenario(const ApiContext& context, const sim::Scenario& scenario) {
-  make_robot(make_spec(scenario, {.controllers = context.first.controllers}));
+  make_robot(
+      make_spec(context.library.placed(scenario), {.controllers = context.first.controllers}));
   context.library.save(scenario);
 }
 

@@ -12,6 +12,7 @@
 #include "algo/pipeline/parameter_table.hpp"
 #include "server/run/arm_json.hpp"
 #include "server/run/json_reader.hpp"
+#include "server/run/map_robot.hpp"
 #include "server/run/obstacle_json.hpp"
 #include "server/run/request_json.hpp"
 #include "server/run/scenario_json.hpp"
@@ -417,6 +418,20 @@ void add_session_routes(net::Router& router, ApiContext& context) {
   routes.add("PUT",
              "/hand_goal",
              goal_route("set_hand_goal", {kHandGoalFields.begin() + 1, kHandGoalFields.end()}));
+  routes.add("PUT", "/pose", goal_route("set_initial_pose", {"x", "y", "heading"}));
+  routes.add(
+      "DELETE", "/pose", [](OpenSession& open, const Request& request, const Responder& respond) {
+        submit_and_reply(open.session(), {algo::SetInitialPose{}, {}}, request, respond);
+      });
+  routes.add(
+      "GET",
+      "/map",
+      [](OpenSession& open, const Request&, const Responder& respond) {
+        const auto& map = open.session().state().spec.map;
+        if (map == nullptr) throw net::HttpError(404, "The robot of this session knows no map.");
+        respond(net::json_response(200, map->document));
+      },
+      Sign::None);
   routes.add("PUT", "/joints", goal_route("set_joints", {"position"}));
   routes.add(
       "DELETE", "/goal", [](OpenSession& open, const Request& request, const Responder& respond) {

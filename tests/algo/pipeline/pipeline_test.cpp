@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tests/algo/allocations.hpp"
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "algo/gate.hpp"
@@ -35,6 +36,7 @@ struct PipelineTest : ::testing::Test {
     t.observation.clear_sensors();
     t.observation.stamp = 0.025 * static_cast<double>(ticks++);
     t.observation.odometry.stamp = t.observation.stamp;
+    t.observation.map_pose = on_map;
     if (with_scan) {
       LaserScan& scan = t.observation.scans.append();
       scan.stamp = t.observation.stamp;
@@ -57,6 +59,7 @@ struct PipelineTest : ::testing::Test {
 
   Pipeline pipeline{{}, disc()};
   Telemetry t{};
+  std::optional<MapPose> on_map{};
   int ticks = 0;
 };
 
@@ -67,6 +70,33 @@ TEST_F(PipelineTest, RestsWithoutAGoalAndDrivesWithOne) {
   EXPECT_GT(tick().command.base.v, 0);
   EXPECT_EQ(t.behaviour, behaviours::kAvoid);
   EXPECT_EQ(t.mission, Mission::Driving);
+}
+
+TEST_F(PipelineTest, ALostRobotRefusesGoalsAndKeepsTheOneItHad) {
+  ask(SetGoal{{3, 0}, std::nullopt});
+  on_map = MapPose{.fix = MapFix::NotUnique};
+  t.observation.odometry.pose = {3, 0, 0};  // so it seems
+  EXPECT_EQ(tick().hold, holds::kNotLocated);
+  EXPECT_EQ(t.command, Command{});
+  EXPECT_EQ(t.mission, Mission::Held);
+  EXPECT_THAT(t.words.why, testing::HasSubstr("Several places"));
+  const char* refusal = "Where the robot is on the map is not known: give an initial pose.";
+  EXPECT_EQ(pipeline.refusal(SetGoal{{1, 0}, std::nullopt}), refusal);
+  EXPECT_EQ(pipeline.refusal(AddGoal{{{1, 0}, std::nullopt}}), refusal);
+  EXPECT_EQ(pipeline.refusal(SetGoals{{{{1, 0}, std::nullopt}}}), refusal);
+  EXPECT_FALSE(pipeline.refusal(ClearGoal{}));
+  EXPECT_FALSE(pipeline.refusal(SetInitialPose{Pose2{1, 2, 3}}));
+  on_map = MapPose{.fix = MapFix::Located, .epoch = 1};
+  t.observation.odometry.pose = {-2, 0, 0};
+  EXPECT_GT(tick().command.base.v, 0);
+  EXPECT_EQ(t.mission, Mission::Driving);
+  EXPECT_FALSE(pipeline.refusal(SetGoal{{1, 0}, std::nullopt}));
+}
+
+TEST_F(PipelineTest, APoseThatIsNoNumberIsRefused) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(pipeline.refusal(SetInitialPose{Pose2{nan, 0, 0}}));
+  EXPECT_FALSE(pipeline.refusal(SetInitialPose{}));
 }
 
 TEST_F(PipelineTest, AStaleScanHoldsAndAFreshOneLetsGo) {

@@ -178,6 +178,31 @@ TEST(FrameCodec, ObservationRequestsAndCommandComeBackBitForBit) {
   }
 }
 
+TEST(FrameCodec, ThePoseOnAMapAndTheOneGivenComeBackBitForBit) {
+  algo::Telemetry t = full_telemetry();
+  t.observation.map_pose = {.fix = algo::MapFix::NotUnique,
+                            .places = 3,
+                            .epoch = 2,
+                            .wheels = {1.0 / 3, -2, 0.7},
+                            .xx = 0.01 / 3,
+                            .xy = -1e-5,
+                            .yy = 0.02,
+                            .turn = 1e-4 / 3,
+                            .fit = 0.9};
+  t.requests.clear();
+  t.requests.push_back(algo::SetInitialPose{algo::Pose2{1.0 / 3, 2, -3}});
+  t.requests.push_back(algo::SetInitialPose{});
+  FrameEncoder encoder;
+  algo::Telemetry back;
+  decode_frame(encoder.encode(t), back);
+  EXPECT_EQ(back.observation.map_pose, t.observation.map_pose);
+  ASSERT_EQ(back.requests.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(back.requests[i], t.requests[i]);
+  t.observation.map_pose.reset();
+  decode_frame(encoder.encode(t), back);
+  EXPECT_FALSE(back.observation.map_pose);
+}
+
 TEST(FrameCodec, OwnStampsAndFrameStampsComeBack) {
   algo::Telemetry t = full_telemetry();
   algo::Observation& o = t.observation;

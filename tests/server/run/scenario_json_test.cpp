@@ -13,6 +13,7 @@
 
 #include "server/run/json_reader.hpp"
 #include "server/run/request_json.hpp"
+#include "server/run/run_spec.hpp"
 #include "server/run/scenario_library.hpp"
 
 namespace server {
@@ -267,6 +268,29 @@ TEST(ScenarioJson, RequestsSayWhereAndWhat) {
       EXPECT_EQ(std::string(e.what()).substr(0, sentence.size()), sentence) << e.what();
     }
   }
+}
+
+TEST(ScenarioJson, AMapIsNamedBesideTheScenario) {
+  const json base = {{"name", "mapped"}};
+  const auto with = [&](const char* key, const json& value, bool map = true) {
+    json document = base;
+    if (map) document["map"] = "office.yaml";
+    document[key] = value;
+    return document;
+  };
+  const sim::Scenario scenario = scenario_from_json(with("lost", true));
+  EXPECT_EQ(scenario.map, "office.yaml");
+  EXPECT_TRUE(scenario.lost);
+  sim::Scenario placed = scenario;
+  placed.map = "/somewhere/office.yaml";
+  EXPECT_EQ(to_json(placed)["map"], "office.yaml");
+  EXPECT_EQ(to_json(placed)["lost"], true);
+  EXPECT_FALSE(to_json(scenario_from_json(base)).contains("map"));
+  for (const char* bad : {"../office.yaml", "/etc/office.yaml", "a\\b.yaml", "office.pgm"}) {
+    EXPECT_THROW(scenario_from_json(with("map", bad)), DocumentError) << bad;
+  }
+  EXPECT_THROW(scenario_from_json(with("lost", true, false)), DocumentError);
+  EXPECT_THROW(make_spec(scenario, {}), DocumentError);  // nobody said where it lies
 }
 
 }  // namespace

@@ -1,0 +1,67 @@
+// server/run/map_robot.hpp: a robot that drives by its pose on a known map.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "algo/full_strip/scan_points.hpp"
+#include "algo/mapping/map_localizer.hpp"
+#include "algo/mapping/occupancy_map.hpp"
+#include "algo/robot.hpp"
+
+namespace server {
+
+/// A map that a robot knows before it drives.
+struct KnownMap {
+  std::string path{};      // of its file
+  std::string name{};      // without the folder, for people
+  algo::Submap walls;      // for the robot
+  std::string document{};  // for the page: JSON, as in docs/interfaces.md
+};
+/// Throws std::runtime_error with a sentence.
+std::shared_ptr<const KnownMap> known_map(const std::filesystem::path& yaml);
+
+/// Stands between a run and any robot with a scanner: simulated, replayed or real. Puts the pose by
+/// matched scans into the odometry of each observation, and tells how sure it is. Pipeline and
+/// record see nothing but this observation, so a replay needs neither map nor localizer.
+///
+/// While the robot is not located, its pose goes on by the wheels alone, and the gate holds it.
+class MapRobot final : public algo::Robot, public algo::Locating {
+ public:
+  /// `start_W`: the robot begins about there, if that is known.
+  MapRobot(std::unique_ptr<algo::Robot> robot,
+           const KnownMap& map,
+           const std::optional<algo::Pose2>& start_W);
+
+  const algo::RobotSpec& spec() const override { return robot_->spec(); }
+  void reset(algo::Observation& observation) override;
+  bool step(const algo::Command& command, algo::Observation& observation) override;
+  double next_period() const override { return robot_->next_period(); }
+  void stop() noexcept override { robot_->stop(); }
+  algo::Arming* arming() override { return robot_->arming(); }
+  algo::Editing* editing() override { return robot_->editing(); }
+  algo::Publishing* publishing() override { return robot_->publishing(); }
+  algo::Locating* locating() override { return this; }
+  std::optional<algo::GroundTruth> ground_truth() const override { return robot_->ground_truth(); }
+  void find_moved(algo::Recycled<algo::Moved>& moved) const override { robot_->find_moved(moved); }
+
+  void place(const algo::SetInitialPose& at) override;
+
+ private:
+  void locate(algo::Observation& observation);
+  void correct(algo::Observation& observation);
+
+  std::unique_ptr<algo::Robot> robot_;
+  algo::MapLocalizer localizer_;
+  std::optional<algo::Pose2> start_W_{};
+  algo::ScanPoints trail_{};
+  algo::Pose2 pose_W_{};                  // the newest one
+  algo::Pose2 wheels_{};                  // the odometry then
+  std::optional<algo::Pose2> scanned_{};  // the odometry at the newest scan
+  bool located_ = false;
+  std::uint32_t epoch_ = 0;
+};
+
+}  // namespace server

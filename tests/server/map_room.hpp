@@ -1,0 +1,59 @@
+// tests/server/map_room.hpp: a room, its map, and a robot with poor wheels in it.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "tests/temporary_folder.hpp"
+#include <nlohmann/json.hpp>
+
+#include "server/run/map_file.hpp"
+#include "server/run/map_robot.hpp"
+#include "server/run/run_spec.hpp"
+#include "server/run/scenario_json.hpp"
+
+namespace map_room {
+
+/// A room of 16 x 9 m with things in it. The wheels report 5 % too much and slip.
+inline sim::Scenario poor_wheels_in_a_room() {
+  const auto document = nlohmann::json::parse(R"({
+    "name": "room", "physics": "kinematic", "controller": "strip", "time_limit": 90,
+    "start": {"x": 1.5, "y": 1.5, "heading": 0}, "goal": {"x": 14, "y": 7.5},
+    "drive": {"odometry_scale": 0.05, "yaw_slip": 0.05, "odometry_noise": 0.02,
+              "odometry_slip": 0.05},
+    "obstacles": [
+      {"type": "wall", "x": 8, "y": 0, "length": 16, "thickness": 0.1},
+      {"type": "wall", "x": 8, "y": 9, "length": 16, "thickness": 0.1},
+      {"type": "wall", "x": 0, "y": 4.5, "length": 9, "thickness": 0.1, "heading": 1.5707963},
+      {"type": "wall", "x": 16, "y": 4.5, "length": 9, "thickness": 0.1, "heading": 1.5707963},
+      {"type": "box", "x": 5, "y": 4, "length": 2, "width": 1},
+      {"type": "box", "x": 10, "y": 6, "length": 0.8, "width": 1.6},
+      {"type": "cylinder", "x": 12, "y": 2, "radius": 0.5},
+      {"type": "box", "x": 3, "y": 8.6, "length": 1.4, "width": 0.7}]})");
+  return server::scenario_from_json(document);
+}
+
+/// The walls of `scenario` as a map file would show them.
+inline std::shared_ptr<const server::KnownMap> map_of(const sim::Scenario& scenario) {
+  algo::OccupancyMap cells(0.05);
+  for (const algo::Obstacle& obstacle : scenario.obstacles) {
+    const std::vector<algo::Vec2> outline_W = algo::outline_W(obstacle);
+    for (std::size_t k = 0; k < outline_W.size(); ++k) {
+      const algo::Vec2 edge = outline_W[(k + 1) % outline_W.size()] - outline_W[k];
+      const int points = static_cast<int>(edge.norm() / 0.02) + 1;
+      for (int i = 0; i < points; ++i) cells.mark_wall(outline_W[k] + edge * i / points);
+    }
+  }
+  const tests::TemporaryFolder folder;
+  server::write_map(cells, folder.path() / "room.yaml");
+  return server::known_map(folder.path() / "room.yaml");
+}
+
+inline server::RunSpec spec_of(const sim::Scenario& scenario, bool with_map, bool lost = false) {
+  server::RunOverrides overrides;
+  if (with_map) overrides.map = map_of(scenario);
+  overrides.lost = lost;
+  return server::make_spec(scenario, overrides);
+}
+
+}  // namespace map_room

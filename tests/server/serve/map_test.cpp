@@ -1,0 +1,84 @@
+// tests/server/serve/map_test.cpp: the pose on a known map over REST and Foxglove.
+#include <string>
+
+#include "tests/server/map_room.hpp"
+#include "tests/server/serve/app_fixture.hpp"
+#include "tests/server/serve/viewer.hpp"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace server {
+namespace {
+
+using net::test::eventually;
+
+class MapTest : public AppTest {
+ protected:
+  MapTest() : AppTest(map_room::spec_of(map_room::poor_wheels_in_a_room(), true, true)) {}
+  bool located() { return get("/session")["fix"]["state"] == "located"; }
+};
+
+TEST_F(MapTest, TheMapAndTheFixCanBeRead) {
+  EXPECT_EQ(get("/session")["map"], "room.yaml");
+  const json map = get("/session/map");
+  EXPECT_EQ(map["cell"], 0.05);
+  std::size_t cells = 0;
+  for (std::size_t k = 1; k < map["cells"].size(); k += 2)
+    cells += map["cells"][k].get<std::size_t>();
+  EXPECT_EQ(cells, map["columns"].get<std::size_t>() * map["rows"].get<std::size_t>());
+  EXPECT_TRUE(eventually([&] { return located(); }));
+  EXPECT_GT(get("/session")["fix"]["fit"], 0.7);
+}
+
+TEST_F(MapTest, APoseIsGivenAndGoalsAreRefusedUntilItIsFound) {
+  ASSERT_TRUE(eventually([&] { return located(); }));
+  ASSERT_EQ(post("/session/control", {{"action", "pause"}}), 200);
+  const json pose = {{"x", 2}, {"y", 2}, {"heading", 0.2}};
+  EXPECT_EQ(ask("PUT", "/session/pose", pose.dump()).status, 200);
+  EXPECT_EQ(ask("DELETE", "/session/pose").status, 200);
+  EXPECT_EQ(ask("PUT", "/session/pose", R"({"x":1,"y":2})").status, 422);
+  ASSERT_EQ(post("/session/control", {{"action", "step"}}), 200);
+  ASSERT_TRUE(eventually([&] { return get("/session")["fix"]["state"] == "searching"; }));
+  const auto refused = ask("PUT", "/session/goal", R"({"x":3,"y":2})");
+  EXPECT_EQ(refused.status, 409);
+  EXPECT_THAT(refused.body, testing::HasSubstr("give an initial pose"));
+  ASSERT_EQ(post("/session/control", {{"action", "play"}}), 200);
+  ASSERT_TRUE(eventually([&] { return located(); }));
+  EXPECT_EQ(ask("PUT", "/session/goal", R"({"x":3,"y":2})").status, 200);
+}
+
+TEST_F(MapTest, FoxglovesInitialPoseIsTaken) {
+  ASSERT_TRUE(eventually([&] { return located(); }));
+  ASSERT_EQ(post("/session/control", {{"action", "pause"}}), 200);
+  const Viewer viewer(port_);
+  const json channel = {{"id", 9},
+                        {"topic", "/initialpose"},
+                        {"encoding", "json"},
+                        {"schemaName", "geometry_msgs/PoseWithCovarianceStamped"}};
+  viewer.client.send_text(json({{"op", "advertise"}, {"channels", {channel}}}).dump());
+  const json position = {{"x", 2}, {"y", 2}, {"z", 0}};
+  const json orientation = {{"x", 0}, {"y", 0}, {"z", 0.1}, {"w", 0.995}};
+  const json pose = {{"position", position}, {"orientation", orientation}};
+  const json message = {{"pose", {{"pose", pose}, {"covariance", json::array()}}}};
+  viewer.client.send_binary(foxglove::client_message(9, message.dump()));
+  EXPECT_TRUE(eventually([&] {
+    post("/session/control", {{"action", "step"}});
+    return get("/session")["fix"]["state"] == "searching";
+  }));
+  ASSERT_EQ(post("/session/control", {{"action", "play"}}), 200);
+  EXPECT_TRUE(eventually([&] { return located(); }));
+}
+
+TEST_F(MapTest, AResetKeepsTheMapAndAnotherWorldHasNone) {
+  ASSERT_EQ(post("/session/control", {{"action", "reset"}}), 200);
+  EXPECT_EQ(get("/session")["map"], "room.yaml");
+  ASSERT_EQ(post("/session/scenario", {{"scenario", "case1"}}), 200);
+  EXPECT_TRUE(get("/session")["map"].is_null());
+  EXPECT_EQ(ask("GET", "/session/map").status, 404);
+  const auto refused = ask("PUT", "/session/pose", R"({"x":1,"y":2,"heading":0})");
+  EXPECT_EQ(refused.status, 409);
+  EXPECT_THAT(refused.body, testing::HasSubstr("knows no map"));
+}
+
+}  // namespace
+}  // namespace server
