@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
                    add_soak_command,
                    add_compare_command,
                    add_crowd_command,
+                   add_locate_command,
                    add_map_command,
                    add_merge_command,
                    add_report_command,

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "algo/obstacle.hpp"
+#include "server/lab/mapping/corridor_walls.hpp"
 #include "server/run/text_file.hpp"
 #include "sim/drive_errors.hpp"
 #include "sim/random.hpp"
@@ -23,107 +23,36 @@ namespace {
 using algo::Pose2;
 using algo::Vec2;
 
-constexpr double kLength = 298;         // [m] between the outer corridors' middles
-constexpr double kCross = 200;          // [m] at which a corridor joins the long ones
-constexpr double kDepth = 50;           // [m] between the long corridors
-constexpr double kHalfCorridor = 1.2;   // [m]
-constexpr double kWallThickness = 0.1;  // [m]
-constexpr double kStep = 0.15;          // [m] between two scans
-constexpr double kTurnStep = 0.1;       // [rad] likewise, turning on the spot
-constexpr double kPeriod = 0.2;         // [s] likewise
-constexpr double kSway = 0.2;           // [m] to both sides of the corridor's middle
-constexpr double kSwayRate = 0.3;       // [rad/m]
-constexpr double kBuildingRange = 30;   // [m]
-constexpr double kRangeNoise = 0.01;    // [m]
-constexpr double kNothing = 81.91;      // [m] as an LMS writes "no echo"
+constexpr double kLength = 298;        // [m] between the outer corridors' middles
+constexpr double kCross = 200;         // [m] at which a corridor joins the long ones
+constexpr double kDepth = 50;          // [m] between the long corridors
+constexpr double kHalfCorridor = 1.2;  // [m]
+constexpr double kStep = 0.15;         // [m] between two scans
+constexpr double kTurnStep = 0.1;      // [rad] likewise, turning on the spot
+constexpr double kPeriod = 0.2;        // [s] likewise
+constexpr double kSway = 0.2;          // [m] to both sides of the corridor's middle
+constexpr double kSwayRate = 0.3;      // [rad/m]
+constexpr double kBuildingRange = 30;  // [m]
+constexpr double kRangeNoise = 0.01;   // [m]
+constexpr double kNothing = 81.91;     // [m] as an LMS writes "no echo"
 constexpr sim::BeamPattern kBeams{-std::numbers::pi / 2, std::numbers::pi / 180, 181};
 constexpr std::size_t kNextRelation = 7;  // scans, about a metre
 constexpr std::size_t kLoopStride = 20;   // scans between the poses that close loops
 constexpr std::size_t kLoopAge = 700;     // scans between the two poses of a loop
 constexpr double kSamePlace = 2;          // [m]
 
-/// Puts up walls along corridors.
-class Builder {
- public:
-  explicit Builder(std::uint64_t seed) : random_(seed, 0xb17d) {}
-
-  /// A side of a corridor from `a` to `b`, with the corridor to its left: doors, and open rooms.
-  void side(const Vec2& a, const Vec2& b) {
-    const double length = (b - a).norm();
-    const Pose2 along_W{a.x(), a.y(), std::atan2((b - a).y(), (b - a).x())};
-    double at = 0;
-    while (true) {
-      const double next = at + random_.uniform(1.5, 7);
-      const double door = random_.uniform(0.8, 1.3);
-      if (next + door + 0.3 > length) break;
-      wall(along_W, {at, 0}, {next, 0});
-      if (random_.uniform() < 0.75) {
-        closed_door(along_W, next, door);
-      } else {
-        open_room(along_W, next, door, length);
-      }
-      at = next + door;
-    }
-    wall(along_W, {at, 0}, {length, 0});
-  }
-
-  sim::RangeCaster& caster() { return caster_; }
-
- private:
-  void closed_door(const Pose2& along_W, double at, double width) {
-    const double deep = -random_.uniform(0.1, 0.35);
-    wall(along_W, {at, 0}, {at, deep});
-    wall(along_W, {at, deep}, {at + width, deep});
-    wall(along_W, {at + width, deep}, {at + width, 0});
-  }
-
-  void open_room(const Pose2& along_W, double at, double width, double length) {
-    const double middle = at + width / 2;
-    const double half = std::min({random_.uniform(1.5, 3), middle, length - middle});
-    const double deep = -random_.uniform(3, 7);
-    constexpr double kFront = -0.15;  // [m] the room's side of the corridor's wall
-    wall(along_W, {middle - half, kFront}, {at, kFront});
-    wall(along_W, {at + width, kFront}, {middle + half, kFront});
-    wall(along_W, {middle - half, kFront}, {middle - half, deep});
-    wall(along_W, {middle + half, kFront}, {middle + half, deep});
-    wall(along_W, {middle - half, deep}, {middle + half, deep});
-    const Vec2 cupboard(middle + random_.uniform(-1, 1), -random_.uniform(1.5, 2.7));
-    const double edge = random_.uniform(0.3, 0.8);
-    add({algo::compose(along_W, {cupboard.x(), cupboard.y(), 0}), algo::Box{edge, edge}});
-  }
-
-  void wall(const Pose2& along_W, const Vec2& from, const Vec2& to) {
-    const Vec2 way = to - from;
-    const Vec2 middle = (from + to) / 2;
-    const Pose2 at{middle.x(), middle.y(), std::atan2(way.y(), way.x())};
-    add({algo::compose(along_W, at), algo::Wall{way.norm(), kWallThickness}});
-  }
-
-  struct Thing {
-    Pose2 pose_W{};
-    algo::Shape shape{};
-  };
-  void add(const Thing& thing) {
-    caster_.add({.id = ++count_, .pose_W = thing.pose_W, .shape = thing.shape});
-  }
-
-  sim::Random random_;
-  sim::RangeCaster caster_;
-  std::uint32_t count_ = 0;
-};
-
-void put_up(Builder& builder) {
+void put_up(CorridorWalls& walls) {
   constexpr double w = kHalfCorridor;
-  builder.side({-w, -w}, {kLength + w, -w});
-  builder.side({kLength + w, -w}, {kLength + w, kDepth + w});
-  builder.side({kLength + w, kDepth + w}, {-w, kDepth + w});
-  builder.side({-w, kDepth + w}, {-w, -w});
+  walls.side({-w, -w}, {kLength + w, -w});
+  walls.side({kLength + w, -w}, {kLength + w, kDepth + w});
+  walls.side({kLength + w, kDepth + w}, {-w, kDepth + w});
+  walls.side({-w, kDepth + w}, {-w, -w});
   constexpr std::array<std::array<double, 2>, 2> kBlocks{{{0, kCross}, {kCross, kLength}}};
   for (const auto& [left, right] : kBlocks) {
-    builder.side({left + w, kDepth - w}, {right - w, kDepth - w});
-    builder.side({right - w, kDepth - w}, {right - w, w});
-    builder.side({right - w, w}, {left + w, w});
-    builder.side({left + w, w}, {left + w, kDepth - w});
+    walls.side({left + w, kDepth - w}, {right - w, kDepth - w});
+    walls.side({right - w, kDepth - w}, {right - w, w});
+    walls.side({right - w, w}, {left + w, w});
+    walls.side({left + w, w}, {left + w, kDepth - w});
   }
 }
 
@@ -197,8 +126,10 @@ void write_long_building(const std::filesystem::path& file,
                          std::uint64_t seed,
                          const sim::DriveConfig& errors) {
   if (const auto problem = sim::defect(errors)) throw std::invalid_argument(*problem);
-  Builder builder(seed);
-  put_up(builder);
+  CorridorWalls walls(seed);
+  put_up(walls);
+  sim::RangeCaster caster;
+  for (const Piece& piece : walls.pieces()) caster.add(piece.obstacle);
   const std::vector<Pose2> path_W = drive();
   const std::vector<Pose2> odometry_W = sim::reported_path(path_W, errors, seed);
   sim::Random noise(seed, 0x5ca9);
@@ -206,7 +137,7 @@ void write_long_building(const std::filesystem::path& file,
   std::vector<double> draws(kBeams.beams);
   std::string log = "# A simulated drive; the poses are the odometry's.\n";
   for (std::size_t i = 0; i < path_W.size(); ++i) {
-    builder.caster().cast(path_W[i], kBeams, kBuildingRange, ranges);
+    caster.cast(path_W[i], kBeams, kBuildingRange, ranges);
     noise.fill_normal(draws);
     log += fmt::format("FLASER {}", kBeams.beams);
     for (std::size_t k = 0; k < ranges.size(); ++k) {
