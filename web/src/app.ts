@@ -1,7 +1,7 @@
 // web/src/app.ts: the state of the page and its actions: one link, one scene, the controls.
 import { createContext } from "preact";
 import { useContext } from "preact/hooks";
-import { Catalog, Page, RequestJson, RobotItem, ScenarioItem, SessionState } from "./contract";
+import { Catalog, MapDocument, Page, RequestJson, RobotItem, ScenarioItem, SessionState } from "./contract";
 import type { ArmDesk } from "./arm/desk";
 import { View } from "./draw/view";
 import { Editor } from "./edit/editor";
@@ -207,7 +207,7 @@ export class App {
     const drives = may && (session?.robot.drives ?? false);
     const editable = may && (session?.robot.editable ?? false);
     const looks = tool === "pan" || tool === "measure";
-    const can = tool === "goal" ? drives : tool === "hand" ? drives && !!session?.robot.arm : editable;
+    const can = tool === "goal" ? drives : tool === "pose" ? may && !!session?.map : tool === "hand" ? drives && !!session?.robot.arm : editable;
     return looks || can ? tool : "pan";
   }
   show_three(three: boolean): void {
@@ -324,6 +324,7 @@ export class App {
     const before = this.ui.value.session;
     fold_session(this.scene, session);
     if (session.robot.arm && !this.desk) void this.fetch_desk();
+    if (session.map !== before?.map || (session.map && session.run?.id !== before?.run?.id)) void this.fetch_map(session.map);
     const other_world = before?.scenario.name !== session.scenario.name;
     const other_run = before?.run?.id !== session.run?.id;
     if (other_world) {
@@ -343,6 +344,16 @@ export class App {
     if (other_tool || (other_run && session.source === "hardware")) this.ui.set({ tool: "pan", preview: null });
     const gone = this.ui.value.selection?.kind === "obstacle" && !this.selected_obstacle;
     this.ui.set({ session, ...(gone ? { selection: null } : {}) });
+    this.redraw();
+  }
+
+  private async fetch_map(name: string | null | undefined): Promise<void> {
+    if (!name && !this.scene.map) return;
+    const { bounds_of, show_map } = await import("./draw/known_map");
+    const map = name ? await this.attempt(rest.get<MapDocument>(session_path("/map"))) : null;
+    show_map(map);
+    this.scene.map = map && bounds_of(map);
+    if (this.view.fitted) this.view.fit();
     this.redraw();
   }
 

@@ -123,6 +123,7 @@ export interface SessionState {
   hand_goal?: HandGoalJson | null; // of robots with an arm, as the next two
   carry_goal?: GoalJson | null;
   joint_goal?: number[] | null;
+  map: string | null;       // the file of the map that the robot knows
   loop: boolean;            // after the last goal, go on to the first
   edited: boolean;          // the world differs from the scenario as loaded or saved
   obstacles: ObstacleJson[];
@@ -157,7 +158,21 @@ export type RequestJson =
   | { type: "move_obstacle"; id: number; x: number; y: number; heading: number }
   | { type: "remove_obstacle"; id: number }
   | { type: "joystick"; forward: number; turn: number; mode: string }
-  | { type: "stop"; engaged: boolean };
+  | { type: "stop"; engaged: boolean }
+  | { type: "set_initial_pose"; x: number; y: number; heading: number }
+  | { type: "set_initial_pose" };
+
+/** The map that a robot knows: cells by rows from the corner, as pairs of a kind (0 unknown, 1 free, 2 wall) and the
+ * number of such cells in a row. */
+export interface MapDocument {
+  name: string;
+  cell: number; // [m]
+  x: number;    // [m] the lower left corner
+  y: number;
+  columns: number;
+  rows: number;
+  cells: number[];
+}
 
 /** The answer to a request; `warning` says why a goal may not be reached. */
 export interface Accepted { id?: number; warning?: string }

@@ -27,6 +27,7 @@ export interface Draft {
   hand?: HandGoalJson; // of an arm
   obstacle?: Obstacle;
   start?: Pose;
+  pose?: Pose; // of the robot on its map
   sketch?: Point[]; // corners so far
   measure?: { from: Point; to: Point };
   cursor?: Point; // the keyboard's crosshair
@@ -83,6 +84,17 @@ export function lacks_ground(scene: SceneState): boolean {
   return !grounds && (scene.obstacles.some(is_ground) || !!scene.frame?.tilt || senses_ground(scene));
 }
 
+interface MapDrawings {
+  draw_map(g: Context, view: View, palette: Palette): void;
+  draw_sure(g: Context, view: View, palette: Palette, scene: SceneState): void;
+}
+let maps: MapDrawings | null = null;
+
+/** Draws the map that the robot knows, and how sure it is of its pose, from now on. */
+export function draw_on_map(drawings: MapDrawings): void {
+  maps = drawings;
+}
+
 interface ArmDrawings { draw_plan: DrawArm; draw_arm: DrawArm }
 type DrawArm = (g: Context, view: View, palette: Palette, scene: SceneState, overlay: Overlay) => void;
 let arms: ArmDrawings | null = null;
@@ -101,6 +113,7 @@ export function draw_scene(g: Context, view: View, palette: Palette,
   g.fillStyle = palette.bg;
   g.fillRect(0, 0, view.width, view.height);
   if (!overlay.hidden.has(kOwn.mesh.name)) draw_grid(g, view, palette);
+  if (!overlay.hidden.has(kOwn.map.name)) maps?.draw_map(g, view, palette);
   const solids: Obstacle[] = [], ground: Obstacle[] = [];
   for (const o of held_obstacles(scene.obstacles, overlay.draft)) (is_ground(o) ? ground : solids).push(o);
   const pose = robot_pose(scene);
@@ -129,6 +142,7 @@ export function draw_scene(g: Context, view: View, palette: Palette,
   if (pose && scene.drives && on(kOwn.safety)) draw_safety(g, view, palette, pose, scene.safety_distance);
   draw_goals(g, view, palette, scene, overlay);
   if (canvas) for (const layer of below) if (!grids.includes(layer)) draw_layer(canvas, layer);
+  if (on(kOwn.sure)) maps?.draw_sure(g, view, palette, scene);
   if (pose) draw_robot(g, view, palette, pose, scene.radius, scene.half_track, palette.robot, 1, scene.hull);
   grounds?.draw_tilt(g, view, palette, scene);
   if (f) draw_bumpers(g, view, palette, f, scene.radius);
@@ -141,6 +155,9 @@ export function draw_scene(g: Context, view: View, palette: Palette,
   const held = scene.obstacles.find((o) => o.id === selected);
   if (held && overlay.handles && !overlay.draft.moved) draw_handles(g, view, palette, overlay.draft.obstacle ?? held);
   draw_draft(g, view, palette, overlay.draft);
+  if (overlay.draft.pose) {
+    draw_robot(g, view, palette, overlay.draft.pose, scene.radius, scene.half_track, palette.accent, 0.8, scene.hull);
+  }
   draw_scale(g, view, palette, overlay.insets, overlay.pointer ?? null);
 }
 

@@ -8,7 +8,7 @@ import {
 } from "./edits";
 
 /** `pan` moves the view, and a press selects. */
-export type Tool = "pan" | "goal" | "hand" | "start" | "wall" | "box" | "cylinder" | "polygon" | "mover" | "measure" | GroundKind;
+export type Tool = "pan" | "goal" | "hand" | "start" | "pose" | "wall" | "box" | "cylinder" | "polygon" | "mover" | "measure" | GroundKind;
 /** Tools that make an obstacle of one drag, and those that take a point at a time. */
 export type DragTool = "wall" | "box" | "cylinder" | GroundKind;
 export type SketchTool = "wall" | "polygon" | "mover";

@@ -209,6 +209,12 @@ export class Editor {
   change(label: string, from: Obstacle, to: Obstacle): Promise<Accepted | null> {
     return this.edit(change_edit(label, from, to));
   }
+  /** Tells the robot where it is on its map; null: anywhere. There is no undo: it looks for its place anew. */
+  async set_pose(pose: Pose | null): Promise<void> {
+    this.app_.go_live();
+    const answer = await this.app_.request({ type: "set_initial_pose", ...(pose ?? {}) });
+    if (answer && pose) this.app_.pick_tool("pan");
+  }
   set_start(pose: Pose): void {
     if (this.app_.scene.start) void this.edit(start_edit(this.app_.scene.start, pose));
   }

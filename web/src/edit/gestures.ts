@@ -26,6 +26,7 @@ export interface GestureTarget {
   add_goal(goal: Goal): void; // after the goals that the robot has
   change_goal(index: number, goal: Goal): void; // one of the list
   set_start(pose: Pose): void;
+  set_pose?(pose: Pose): void; // of the robot, on the map that it knows
   add(obstacle: Obstacle): void;
   change(label: string, from: Obstacle, to: Obstacle): void;
   snap(p: Point): Point;
@@ -170,6 +171,7 @@ export class Gestures {
     const { scene } = this.t_;
     this.measure_ = undefined;
     if (is_sketch(tool)) return this.sketching(px); // also on an obstacle: walls meet
+    if (tool === "pose") return this.posing(px, at);
     const arm = this.t_.arm?.();
     if (tool === "hand" || (arm?.near(this.t_.view, px) && this.t_.selection()?.kind === "hand")) {
       return arm?.drag(this.t_.view, px) ?? pan(px, false);
@@ -205,6 +207,15 @@ export class Gestures {
       });
     }
     return tool === "pan" ? pan(px, true) : this.drawing(px, at, tool);
+  }
+
+  /** Tells the robot where it is. */
+  private posing(px: Point, at: Point): Drawing {
+    const pose = (to: Point, dragged: boolean) => dragged_start(at, to, dragged, this.t_.scene.frame?.pose ?? null);
+    return {
+      kind: "draw", px, draft: (to, dragged) => ({ pose: pose(to, dragged) }),
+      finish: (to, dragged) => this.t_.set_pose?.(pose(to, dragged)),
+    };
   }
 
   /** An obstacle of one drag. */

@@ -72,10 +72,23 @@ export interface ArmFrame {
 }
 
 /** One tick of a run; positions in W, metres, radians, seconds. */
+export const kFixes = ["searching", "nowhere", "not_unique", "unsure", "located"] as const;
+/** Of a robot that knows a map: Frame.pose is then its pose by matched scans. */
+export interface MapPose {
+  fix: (typeof kFixes)[number];
+  places: number; // that fit
+  wheels: Pose;   // by the odometry alone
+  xx: number;     // [m2] variances of the pose
+  xy: number;
+  yy: number;
+  turn: number;   // [rad2]
+  fit: number;    // share of the newest scans' points on the map's walls
+}
+
 export interface Frame {
   tick: number;
   stamp: number;
-  pose: Pose;               // odometry
+  pose: Pose;               // odometry, or on the map that the robot knows
   twist: { v: number; omega: number };   // executed, by odometry
   command: { v: number; omega: number };
   sweeps: Sweep[];          // only those new in this tick
@@ -106,6 +119,7 @@ export interface Frame {
   joints: number[] | null;      // [rad] measured; robots with an arm only, as the next two
   joint_rates: number[];        // [rad/s] measured
   arm: ArmFrame | null;
+  map_pose: MapPose | null;
 }
 
 interface XY { x(): number; y(): number }
@@ -172,6 +186,14 @@ export function decode_frame(bytes: Uint8Array, legends: Legends): Frame {
     joints: joints && list(joints.positionsLength(), (i) => joints.positions(i)!),
     joint_rates: joints ? list(joints.ratesLength(), (i) => joints.rates(i)!) : [],
     arm: arm_of(f.arm()),
+    map_pose: map_pose_of(f.mapPose()),
+  };
+}
+
+function map_pose_of(m: wire.MapPose | null): MapPose | null {
+  return m && {
+    fix: kFixes[m.fix()] ?? "searching", places: m.places(), wheels: pose(m.wheels()),
+    xx: m.xx(), xy: m.xy(), yy: m.yy(), turn: m.turn(), fit: m.fit(),
   };
 }
 

@@ -15,6 +15,7 @@ const kHoldWords: Record<string, string> = {
   dazzled: "Laser dazzled",
   not_finite: "A number was not finite",
   overturned: "Turned over",
+  not_located: "Not located on the map",
   no_joints: "The arm does not report",
   no_tilt: "No inclination yet",
   stale_tilt: "Inclination too old",

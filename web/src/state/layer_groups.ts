@@ -32,8 +32,8 @@ export function layer_groups(scene: SceneState, compared = false): { title: Grou
     Forces: [[], []],
     Ways: [[], [...(compared ? kCompared : [kOwn.path]), ...when(scene.stick !== null, kOwn.wanted, kOwn.executed),
       ...when(!!frame?.truth, kOwn.truth), ...when(drives, kOwn.route), ...when(!!frame?.arm, kArmLayers.plan)]],
-    World: [[...when(drives, kOwn.safety, kOwn.goal), kOwn.robot, ...when(scene.arm !== null, kArmLayers.links, kArmLayers.goal), ...when(scene.world, kOwn.start, kOwn.obstacles),
-      ...when(scene.obstacles.some(is_ground), kOwn.ground), ...when(scene.obstacles.some((o) => o.path), kOwn.ways)], [kOwn.mesh]],
+    World: [[...when(drives, kOwn.safety, kOwn.goal), kOwn.robot, ...when(!!frame?.map_pose, kOwn.sure), ...when(scene.arm !== null, kArmLayers.links, kArmLayers.goal), ...when(scene.world, kOwn.start, kOwn.obstacles),
+      ...when(scene.obstacles.some(is_ground), kOwn.ground), ...when(scene.obstacles.some((o) => o.path), kOwn.ways)], [...when(scene.map !== null, kOwn.map), kOwn.mesh]],
   };
   return kGroups.map((title) => {
     const [first, last] = own[title];

@@ -59,6 +59,8 @@ export const kOwn = {
   ways: own("ways", "Ways of movers", "obstline", "polyline", "dashed"),
   ground: own("ground", "Ramps, trenches", "high", "solid"),
   obstacles: own("obstacles", "Obstacles", "obstline", "solid", "solid", true),
+  map: own("map", "Known map", "muted", "grid"),
+  sure: own("map.sure", "Pose on the map, 95 %", "path", "circles"),
   mesh: own("mesh", "Grid, 1 m", "muted", "mesh"),
 };
 

@@ -13,7 +13,7 @@ const kCameras = "tautline.cameras";
 const kOrbits = "tautline.orbits";
 const kMostCameras = 40; // the one that was kept first goes first
 const kTools: Record<Tool, true> = {
-  pan: true, goal: true, hand: true, start: true, cylinder: true, box: true, wall: true, polygon: true, mover: true, measure: true, ramp: true, step: true, trench: true,
+  pan: true, goal: true, hand: true, start: true, pose: true, cylinder: true, box: true, wall: true, polygon: true, mover: true, measure: true, ramp: true, step: true, trench: true,
 };
 
 export function stored_theme(): Theme {

@@ -46,6 +46,7 @@ export interface SceneState {
   heard_at: number | null; // [ms] performance.now() when the newest live frame came
   drives: boolean; // false for a recorded log, which nothing steers
   world: boolean; // false for a recorded log, which has no obstacles
+  map: Bounds | null; // of the map that the live robot knows
 }
 
 export function new_scene(most_rows = Infinity): SceneState {
@@ -53,7 +54,7 @@ export function new_scene(most_rows = Infinity): SceneState {
     frame: null, sweeps: [], filtered: new FilteredScan(), readings: new Map(), layers: new Map(), known: new Map(),
     words: null, inclination: null, stick: null, columns: new Columns(most_rows), rows: 0, obstacles: [], start: null,
     goal: null, goals_ahead: [], route: { goals: [], next: 0, loop: false }, arm: null, arm_plan: null, arm_asked: null, radius: 0.35, hull: null, half_track: 0.25, top: { v: Infinity, omega: Infinity }, safety_distance: 1, parameters: {},
-    scan_timeout: 0, events: new EventLog(), run: null, controller: "", heard_at: null, drives: true, world: true,
+    scan_timeout: 0, events: new EventLog(), run: null, controller: "", heard_at: null, drives: true, world: true, map: null,
   };
 }
 
@@ -237,6 +238,10 @@ export function scene_bounds(scene: SceneState): Bounds {
   if (hand) include(b, hand.x, hand.y, 0.3);
   for (const goal of scene.goals_ahead) include(b, goal.x, goal.y, 0.7);
   for (const o of scene.obstacles) include_obstacle(b, o);
+  if (scene.map) {
+    include(b, scene.map.min_x, scene.map.min_y);
+    include(b, scene.map.max_x, scene.map.max_y);
+  }
   const empty = !scene.world || scene.obstacles.length === 0;
   if (pose) include(b, pose.x, pose.y, empty ? kOpenSight : scene.radius + 0.25);
   if (b.min_x > b.max_x) include(b, 0, 0, 3);

@@ -31,6 +31,7 @@ export const icons = {
   cylinder: line(<circle cx="10" cy="10" r="6" />),
   box: line(<rect x="4" y="4" width="12" height="12" />),
   ground: line(<path d="M2 14h3l6-6h7M11 14h1M15 14h3M12 14v3h3v-3" />),
+  pose: line(<><circle cx="10" cy="11" r="5" /><path d="M10 11V6M10 2v2M10 18v1M2 11h2M16 11h2" /></>),
   start: line(<><circle cx="10" cy="10" r="6.5" /><path d="M8.5 7.5 13 10l-4.5 2.5z" /></>),
   wall: line(<><path d="M5 15 15 5" /><circle cx="4" cy="16" r="1.6" /><circle cx="16" cy="4" r="1.6" /></>),
   polygon: line(<path d="M10 3l7 5-2.7 8.5H5.7L3 8z" />),

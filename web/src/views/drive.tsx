@@ -102,6 +102,7 @@ export function make_hand(app: App, { tool = () => app.usable_tool, edits = true
     add_goal: (goal) => app.editor.want_goal(goal, true),
     change_goal: (index, goal) => app.editor.change_goal(index, goal),
     set_start: (pose) => app.editor.set_start(pose),
+    set_pose: (pose) => void app.editor.set_pose(pose),
     add: (obstacle) => void app.editor.add(obstacle),
     change: (label, from, to) => void app.editor.change(label, from, to),
     snap: (p) => app.editor.snap(p),
@@ -157,6 +158,7 @@ function Tools(): JSX.Element {
       {button("pan", "Select: press an object, drag the view or the selected object", "V", true)}
       {button("goal", "Goal: press for the position, drag for the heading", "G", drives)}
       {hand}
+      {button("pose", "Pose on the map: press for the position, drag for the heading", "I", may_drive && !!session?.map)}
       {button("start", "Start: press for the position, drag for the heading", "S", editable)}
       {button("wall", "Wall: drag from end to end, or press both ends", "W", editable)}
       {button("cylinder", "Cylinder: press for the position, drag for the size", "C", editable)}

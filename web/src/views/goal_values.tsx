@@ -43,6 +43,29 @@ export function GoalValues(props: { goal: Goal | null; index: number | null; sel
   );
 }
 
+/** Of the robot on the map that it knows. */
+export function PoseValues(props: { pose: Pose }): JSX.Element {
+  const app = use_app();
+  const { x, y, heading } = props.pose;
+  const [v, type, forget] = use_typed({ x, y, turn: tenths(degrees(heading)) }, []);
+  const apply = () => {
+    void app.editor.set_pose({ x: v.x, y: v.y, heading: radians(v.turn) });
+    forget();
+  };
+  return (
+    <Form label="Pose on the map" name="pose-values" on_submit={apply}>
+      <b>Pose</b>
+      <span class="quiet">within 2 m and 25°</span>
+      <NumberField label="x" unit="m" name="pose-x" value={v.x} on_change={(x) => type({ x: x ?? props.pose.x })} />
+      <NumberField label="y" unit="m" name="pose-y" value={v.y} on_change={(y) => type({ y: y ?? props.pose.y })} />
+      <NumberField label="heading" unit="°" name="pose-heading" value={v.turn} step={5}
+        on_change={(turn) => type({ turn: turn ?? tenths(degrees(heading)) })} />
+      <button type="submit" class="small primary" data-testid="pose-set">Set</button>
+      <button type="button" class="small" data-testid="pose-search" onClick={() => void app.editor.set_pose(null)}>Search the map</button>
+    </Form>
+  );
+}
+
 export function StartValues(props: { start: Pose }): JSX.Element {
   const app = use_app();
   const { x, y, heading } = props.start;

@@ -75,6 +75,7 @@ export function use_scene_keys(app: App, hand: Hand): void {
     v: () => app.pick_tool("pan"),
     g: () => app.pick_tool("goal"),
     s: () => app.pick_tool("start"),
+    i: () => app.pick_tool("pose"),
     w: () => app.pick_tool("wall"),
     o: () => app.pick_tool("polygon"),
     k: () => app.pick_tool("mover"),
@@ -214,6 +215,7 @@ function place(app: App, at: Point, further: boolean): void {
   const tool = app.usable_tool;
   if (tool === "goal") app.editor.want_goal({ ...at, heading: null }, further || app.ui.value.appending);
   if (tool === "hand") app.desk?.put(at);
+  if (tool === "pose") void app.editor.set_pose({ ...at, heading: app.scene.frame?.pose.heading ?? 0 });
   if (tool === "start" && app.scene.start) app.editor.set_start({ ...at, heading: app.scene.start.heading });
   if (tool === "cylinder" || tool === "box" || is_ground_tool(tool)) void app.editor.add(dragged_obstacle(tool, at, at, false)!);
 }

@@ -14,6 +14,7 @@ const kShortcuts: [string[], string][] = [
   [["V"], "Look round: drag to move the view, press to select. Every load returns to this tool"],
   [["G"], "Goal tool: press for the position, drag for the heading. Real hardware drives only after Go"],
   [["Shift+click"], "Goal tool: add a goal after the others"],
+  [["I"], "Robots that know a map, pose tool: press where the robot is, drag for its heading"],
   [["S"], "Start tool: where the robot begins after the next reset"],
   [["W"], "Wall tool"],
   [["C"], "Cylinder tool"],

@@ -8,6 +8,7 @@ import { lazy } from "../ui/lazy";
 
 // Fetched when a tool or a selection first needs them.
 const GoalValues = lazy(async () => (await import("./values")).GoalValues);
+const PoseValues = lazy(async () => (await import("./values")).PoseValues);
 const StartValues = lazy(async () => (await import("./values")).StartValues);
 const NewValues = lazy(async () => (await import("./values")).NewValues);
 const NewGround = lazy(async () => (await import("./values")).NewGround);
@@ -34,6 +35,7 @@ export function ValueBox(props: { hand: Hand }): JSX.Element | null {
     const goal = index === null ? app.editor.shown_goal : app.scene.route.goals[index] ?? null;
     return <GoalValues key={index} goal={draft.goal ?? goal} index={index} selected={selection !== null} />;
   }
+  if (tool === "pose" && app.scene.frame) return <PoseValues pose={draft.pose ?? app.scene.frame.pose} />;
   if (tool === "start" && app.scene.start) return <StartValues start={draft.start ?? app.scene.start} />;
   if (is_ground_tool(tool)) return <NewGround kind={tool} />;
   if (tool === "cylinder" || tool === "box" || tool === "wall") return <NewValues key={tool} kind={tool} />;
