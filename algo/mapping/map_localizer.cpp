@@ -20,6 +20,14 @@ constexpr double kFoundDeviation = 0.2;       // [m]
 constexpr double kFoundTurnDeviation = 0.05;  // [rad]
 constexpr double kWheelDeviation = 0.05;      // of the odometry's scale
 
+// A place that somebody gave.
+constexpr double kStartDeviation = 0.1;       // [m]
+constexpr double kStartTurnDeviation = 0.03;  // [rad]
+constexpr double kGivenDeviation = 0.7;       // [m]
+constexpr double kGivenTurnDeviation = 0.15;  // [rad]
+constexpr double kFarther = 0.03;             // of score that a metre from the given pose is worth
+constexpr double kRidge = 0.75;               // share of the fit that holds between two places
+
 constexpr double kMatchEvery = 0.1;  // [m] of way, a radian counting as a metre
 constexpr MatchPrior kPlacePrior{.position = 1, .heading = 2};
 constexpr double kLeastMatch = 0.35;  // share of the points
@@ -55,12 +63,13 @@ bool same_place(const Pose2& a, const Pose2& b) {
 
 }  // namespace
 
-PlaceFilter::PlaceFilter(const Pose2& pose_M) : pose_M_(pose_M), covariance_(Matrix5::Zero()) {
+PlaceFilter::PlaceFilter(const Pose2& pose_M, double deviation, double turn_deviation)
+    : pose_M_(pose_M), covariance_(Matrix5::Zero()) {
   const std::array<double, 5> deviations{
-      kFoundDeviation, kFoundDeviation, kFoundTurnDeviation, kWheelDeviation, kWheelDeviation};
+      deviation, deviation, turn_deviation, kWheelDeviation, kWheelDeviation};
   for (Eigen::Index k = 0; k < 5; ++k) {
-    const double deviation = deviations[static_cast<std::size_t>(k)];
-    covariance_(k, k) = deviation * deviation;
+    const double each = deviations[static_cast<std::size_t>(k)];
+    covariance_(k, k) = each * each;
   }
 }
 
@@ -120,6 +129,14 @@ void MapLocalizer::restart() {
   odometry_W_.reset();
 }
 
+void MapLocalizer::start(const Pose2& pose_M) {
+  forget();
+  filters_.emplace_back(pose_M, kStartDeviation, kStartTurnDeviation);
+  begin_places();
+  given_ = true;
+  wanted_ = false;
+}
+
 void MapLocalizer::place(const Pose2& guess_M) {
   forget();
   given_M_ = guess_M;
@@ -167,17 +184,55 @@ void MapLocalizer::end_search(const Pose2& odometry_W) {
   searching_ = false;
   idle_ = 0;
   idle_scans_ = 0;
-  poor_ = 0;
   const Pose2 since = pose_step(search_odometry_W_, odometry_W);
-  if (!search_.too_many()) {
-    for (const Place& place : search_.found()) filters_.emplace_back(compose(place.pose, since));
+  if (given_M_) {
+    take_places_about(*given_M_, since);
+  } else {
+    take_places(since);
   }
+  begin_places();
   given_ = given_M_.has_value();
   wanted_ = filters_.empty() && given_;  // it is elsewhere
   given_M_.reset();
+}
+
+void MapLocalizer::begin_places() {
   next_ = 0;
+  poor_ = 0;
   compared_ = false;
   believed_ = false;
+}
+
+void MapLocalizer::take_places(const Pose2& since) {
+  if (search_.too_many()) return;
+  for (const Place& place : search_.found()) {
+    filters_.emplace_back(compose(place.pose, since), kFoundDeviation, kFoundTurnDeviation);
+  }
+}
+
+/// Places along a corridor that all fit are one place, of which the along is not known.
+void MapLocalizer::take_places_about(const Pose2& guess_M, const Pose2& since) {
+  const auto found = search_.found();
+  if (found.empty()) return;
+  const auto worth = [&guess_M](const Place& place) {
+    return place.score - kFarther * (place.pose.position() - guess_M.position()).norm();
+  };
+  const auto best = std::ranges::max_element(found, {}, worth);
+  const Pose2 best_M = compose(best->pose, since);
+  filters_.emplace_back(best_M, kGivenDeviation, kGivenTurnDeviation);
+  for (const Place& place : found) {
+    const Pose2 place_M = compose(place.pose, since);
+    if (&place == &*best || connected(best_M, place_M)) continue;
+    filters_.emplace_back(place_M, kGivenDeviation, kGivenTurnDeviation);
+  }
+}
+
+/// The scan fits all the way from `a_M` to `b_M`.
+bool MapLocalizer::connected(const Pose2& a_M, const Pose2& b_M) const {
+  const double least = kRidge * std::min(fit_at(a_M), fit_at(b_M));
+  return std::ranges::all_of(std::array{0.25, 0.5, 0.75}, [&](double part) {
+    return fit_at(interpolated(a_M, b_M, part)) >= least;
+  });
 }
 
 /// Share of the scan's points that lie on walls.

@@ -22,7 +22,8 @@ namespace algo {
 /// errors of its odometry, corrected by matched scans.
 class PlaceFilter {
  public:
-  explicit PlaceFilter(const Pose2& pose_M);
+  /// `deviation` [m] of x and y, `turn_deviation` [rad].
+  PlaceFilter(const Pose2& pose_M, double deviation, double turn_deviation);
 
   /// Follows a step of the odometry.
   void follow(const Pose2& step);
@@ -65,7 +66,10 @@ class MapLocalizer {
 
   /// As new: nothing is known of the odometry either.
   void restart();
-  /// The robot is within kGivenWay and kGivenTurn of `guess_M`.
+  /// The robot is at `pose_M`, within 0.1 m or so.
+  void start(const Pose2& pose_M);
+  /// The robot is within kGivenWay and kGivenTurn of `guess_M`. Along a plain corridor it stays as
+  /// unsure as that.
   void place(const Pose2& guess_M);
   /// The robot may be anywhere.
   void forget();
@@ -90,6 +94,10 @@ class MapLocalizer {
  private:
   void begin_search(const Pose2& odometry_W);
   void end_search(const Pose2& odometry_W);
+  void begin_places();
+  void take_places(const Pose2& since);
+  void take_places_about(const Pose2& guess_M, const Pose2& since);
+  bool connected(const Pose2& a_M, const Pose2& b_M) const;
   void match_next();
   double fit_at(const Pose2& pose_M) const;
   void drop_worse();

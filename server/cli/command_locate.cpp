@@ -49,7 +49,7 @@ int execute(LocateCommand& command) {
   }
   const mapping::Recording log = mapping::read_recording(command.log);
   const mapping::LocatedLog found =
-      mapping::locate_log(log, read_map(command.map), mapping::start_of(command.start));
+      mapping::locate_log(log, seen_walls(read_map(command.map)), mapping::start_of(command.start));
   if (!command.poses.empty()) write_poses(log, found, command.poses);
   fmt::print("{}\n", command.as_json ? to_json(found).dump(2) : to_text(found));
   return found.located > 0 ? kReached : kNotReached;

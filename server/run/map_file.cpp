@@ -181,6 +181,23 @@ algo::OccupancyMap map_from(const std::string& description,
   return map;
 }
 
+algo::Submap seen_walls(const algo::OccupancyMap& map) {
+  algo::OccupancyMap seen(map.cell_edge());
+  const auto touches_free = [&map](const algo::OccupancyMap::Index& cell) {
+    for (int dj = -1; dj <= 1; ++dj) {
+      for (int di = -1; di <= 1; ++di) {
+        const auto beside = map.at({cell.i + di, cell.j + dj});
+        if (beside.known() && !beside.occupied()) return true;
+      }
+    }
+    return false;
+  };
+  map.each_cell([&](const auto& cell, const auto& tally) {
+    if (tally.occupied() && touches_free(cell)) seen.mark_wall(map.mean_W(cell, tally));
+  });
+  return algo::Submap(seen.tiles().empty() ? map : seen);
+}
+
 algo::OccupancyMap read_map(const std::filesystem::path& yaml) {
   return map_from(read_text(yaml), yaml.filename().string(), [&yaml](const std::string& image) {
     return read_text(yaml.parent_path() / image);

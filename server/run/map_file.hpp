@@ -6,6 +6,7 @@
 #include <string>
 
 #include "algo/mapping/occupancy_map.hpp"
+#include "algo/mapping/submap.hpp"
 
 namespace server {
 
@@ -19,6 +20,10 @@ algo::OccupancyMap read_map(const std::filesystem::path& yaml);
 algo::OccupancyMap map_from(const std::string& description,
                             const std::string& name,
                             const std::function<std::string(const std::string&)>& read_picture);
+
+/// The walls that touch a free cell. The others lie within thick walls or behind them, where no
+/// scanner sees them. All walls, if no wall touches one.
+algo::Submap seen_walls(const algo::OccupancyMap& map);
 
 /// The map as JSON: name, cell [m], corner x, y [m], columns, rows, and the cells by rows from the
 /// corner as pairs of kind and number, one after the other: 0 unknown, 1 free, 2 wall.

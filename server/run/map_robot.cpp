@@ -13,7 +13,7 @@ std::shared_ptr<const KnownMap> known_map(const std::filesystem::path& yaml) {
   const std::string name = yaml.filename().string();
   return std::make_shared<const KnownMap>(KnownMap{std::filesystem::absolute(yaml).string(),
                                                    name,
-                                                   algo::Submap(cells),
+                                                   seen_walls(cells),
                                                    map_document(cells, name)});
 }
 
@@ -25,7 +25,7 @@ MapRobot::MapRobot(std::unique_ptr<algo::Robot> robot,
 void MapRobot::reset(algo::Observation& observation) {
   robot_->reset(observation);
   localizer_.restart();
-  if (start_W_) localizer_.place(*start_W_);
+  if (start_W_) localizer_.start(*start_W_);
   trail_.reset();
   scanned_.reset();
   located_ = false;

@@ -30,7 +30,7 @@ std::shared_ptr<const KnownMap> known_map(const std::filesystem::path& yaml);
 /// While the robot is not located, its pose goes on by the wheels alone, and the gate holds it.
 class MapRobot final : public algo::Robot, public algo::Locating {
  public:
-  /// `start_W`: the robot begins about there, if that is known.
+  /// `start_W`: the robot begins there, if that is known.
   MapRobot(std::unique_ptr<algo::Robot> robot,
            const KnownMap& map,
            const std::optional<algo::Pose2>& start_W);

@@ -1,8 +1,8 @@
 // tests/server/map_room.hpp: a room, its map, and a robot with poor wheels in it.
 #pragma once
 
+#include <algorithm>
 #include <memory>
-#include <vector>
 
 #include "tests/temporary_folder.hpp"
 #include <nlohmann/json.hpp>
@@ -14,10 +14,12 @@
 
 namespace map_room {
 
-/// A room of 16 x 9 m with things in it. The wheels report 5 % too much and slip.
+/// A room of 16 x 9 m with things in it, one corner of it filled. The wheels report 5 % too much
+/// and slip.
 inline sim::Scenario poor_wheels_in_a_room() {
   const auto document = nlohmann::json::parse(R"({
     "name": "room", "physics": "kinematic", "controller": "strip", "time_limit": 90,
+    "lasers": [{"field_of_view_deg": 360, "beams": 720}],
     "start": {"x": 1.5, "y": 1.5, "heading": 0}, "goal": {"x": 14, "y": 7.5},
     "drive": {"odometry_scale": 0.05, "yaw_slip": 0.05, "odometry_noise": 0.02,
               "odometry_slip": 0.05},
@@ -29,19 +31,22 @@ inline sim::Scenario poor_wheels_in_a_room() {
       {"type": "box", "x": 5, "y": 4, "length": 2, "width": 1},
       {"type": "box", "x": 10, "y": 6, "length": 0.8, "width": 1.6},
       {"type": "cylinder", "x": 12, "y": 2, "radius": 0.5},
-      {"type": "box", "x": 3, "y": 8.6, "length": 1.4, "width": 0.7}]})");
+      {"type": "box", "x": 2.5, "y": 7.5, "length": 5, "width": 3}]})");
   return server::scenario_from_json(document);
 }
 
-/// The walls of `scenario` as a map file would show them.
+/// Free cells and walls of the room as a map file would show them: walls are filled.
 inline std::shared_ptr<const server::KnownMap> map_of(const sim::Scenario& scenario) {
   algo::OccupancyMap cells(0.05);
-  for (const algo::Obstacle& obstacle : scenario.obstacles) {
-    const std::vector<algo::Vec2> outline_W = algo::outline_W(obstacle);
-    for (std::size_t k = 0; k < outline_W.size(); ++k) {
-      const algo::Vec2 edge = outline_W[(k + 1) % outline_W.size()] - outline_W[k];
-      const int points = static_cast<int>(edge.norm() / 0.02) + 1;
-      for (int i = 0; i < points; ++i) cells.mark_wall(outline_W[k] + edge * i / points);
+  for (int i = -20; i < 340; ++i) {
+    for (int j = -20; j < 200; ++j) {
+      const algo::Vec2 p = cells.centre({i, j});
+      const auto filled = [&p](const algo::Obstacle& o) { return algo::signed_distance(o, p) < 0; };
+      if (std::ranges::any_of(scenario.obstacles, filled)) {
+        cells.mark_wall(p);
+      } else if (p.x() > 0 && p.x() < 16 && p.y() > 0 && p.y() < 9) {
+        cells.mark_free(p);
+      }
     }
   }
   const tests::TemporaryFolder folder;

@@ -33,9 +33,9 @@ std::optional<algo::Pose2> start_of(const std::string& text) {
 }
 
 LocatedLog locate_log(const Recording& log,
-                      const algo::OccupancyMap& map,
+                      const algo::Submap& map,
                       const std::optional<algo::Pose2>& start_M) {
-  algo::MapLocalizer localizer{algo::Submap(map)};
+  algo::MapLocalizer localizer(map);
   if (start_M) localizer.place(*start_M);
   LocatedLog found;
   for (std::size_t i = 0; i < log.scans.size(); ++i) {

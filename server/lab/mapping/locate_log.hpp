@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "algo/mapping/occupancy_map.hpp"
+#include "algo/mapping/submap.hpp"
 #include "algo/types.hpp"
 #include "server/lab/mapping/map_study.hpp"
 
@@ -28,7 +28,7 @@ std::optional<algo::Pose2> start_of(const std::string& text);
 
 /// The robot stands at its first scan until the search for its place is over.
 LocatedLog locate_log(const Recording& log,
-                      const algo::OccupancyMap& map,
+                      const algo::Submap& map,
                       const std::optional<algo::Pose2>& start_M);
 
 /// Writes the located poses: the log's stamp, x, y [m] and heading [rad]. Throws

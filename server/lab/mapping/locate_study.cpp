@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <variant>
 
 #include "algo/mapping/map_localizer.hpp"
 #include "algo/perceive.hpp"
@@ -18,14 +19,23 @@ using algo::Vec2;
 constexpr double kMapCell = 0.05;      // [m]
 constexpr double kFalsePose = 0.5;     // [m]
 constexpr double kTrackSpacing = 0.2;  // [m]
+constexpr double kScannerRange = 30;   // [m] as the scanner LMS200 has it in centimetres
 constexpr double kTimeLimit = 600;     // [s]
 constexpr double kLostTime = 60;       // [s] after which a robot that was never located gives up
+
+/// The corners of a piece on a map: of a wall, its middle line.
+std::vector<Vec2> drawn(const algo::Obstacle& piece) {
+  const auto* wall = std::get_if<algo::Wall>(&piece.shape);
+  if (wall == nullptr) return algo::outline_W(piece);
+  return {algo::to_parent(piece.pose_W, Vec2(-wall->length / 2, 0)),
+          algo::to_parent(piece.pose_W, Vec2(wall->length / 2, 0))};
+}
 
 /// The map of `pieces`. Where nothing stands is left unknown, as nothing asks for it.
 std::shared_ptr<const KnownMap> map_of(const std::vector<Piece>& pieces) {
   algo::OccupancyMap map(kMapCell);
   for (const Piece& piece : pieces) {
-    const std::vector<Vec2> outline_W = algo::outline_W(piece.obstacle);
+    const std::vector<Vec2> outline_W = drawn(piece.obstacle);
     for (std::size_t k = 0; k < outline_W.size(); ++k) {
       const Vec2 edge = outline_W[(k + 1) % outline_W.size()] - outline_W[k];
       const int points = std::max(1, static_cast<int>(edge.norm() / (kMapCell / 2)));
@@ -124,6 +134,10 @@ sim::Scenario scenario_of(const Drawing& drawing) {
   scenario.time_limit = kTimeLimit;
   scenario.drive = {
       .yaw_slip = 0.05, .odometry_scale = 0.05, .odometry_noise = 0.02, .odometry_slip = 0.05};
+  for (sim::LaserConfig& laser : scenario.robot.sensors.lasers) {
+    laser.unit = sim::LaserUnit::Centimetre;
+    laser.range_max = kScannerRange;
+  }
   const Vec2& start = drawing.way_W[0];
   const Vec2 first = drawing.way_W[1] - start;
   scenario.start = {start.x(), start.y(), std::atan2(first.y(), first.x())};

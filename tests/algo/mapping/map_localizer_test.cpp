@@ -74,6 +74,49 @@ TEST(MapLocalizer, FollowsTheRobotOverOdometryThatIsOffBySixPercent) {
   EXPECT_NEAR(localizer.best().scale().turn, 1 / 1.06 - 1, 0.01);
 }
 
+/// A corridor of 40 m without anything in it, and its scans as far as 8 m.
+LaserScan corridor_scan(const Pose2& pose) {
+  worlds::World corridor;
+  corridor.polygons = {{{0, -1.3}, {40, -1.3}, {40, 1.3}, {0, 1.3}}};
+  LaserScan scan;
+  worlds::scan_world(pose, corridor, 8.0, scan);
+  return scan;
+}
+
+TEST(MapLocalizer, AlongAPlainCorridorAGivenPoseStaysUnsureAndAStartIsBelieved) {
+  OccupancyMap map(0.05);
+  for (double x = 0; x <= 40; x += 0.025) {
+    for (const double y : {-1.3, 1.3}) map.mark_wall({x, y});
+  }
+  for (double y = -1.3; y <= 1.3; y += 0.025) {
+    for (const double x : {0.0, 40.0}) map.mark_wall({x, y});
+  }
+  MapLocalizer localizer{Submap(map)};
+  const Pose2 truth{20, 0.3, 0};
+  const LaserScan scan = corridor_scan(truth);
+  const auto wait = [&] {
+    for (int k = 0; k < 3000; ++k) {
+      localizer.take(scan, {});
+      if (localizer.fix() != MapFix::Searching) return;
+    }
+  };
+  localizer.place({20.8, 0.1, 0.2});
+  wait();
+  EXPECT_EQ(localizer.fix(), MapFix::Unsure) << localizer.sentence();
+  ASSERT_EQ(localizer.places(), 1U);
+  const Eigen::Matrix3d c = localizer.best().covariance();
+  EXPECT_GT(std::sqrt(c(0, 0)), 0.5);
+  EXPECT_LT(std::sqrt(c(1, 1)), 0.1);
+  localizer.start(truth);
+  wait();
+  EXPECT_TRUE(localizer.located()) << localizer.sentence();
+  EXPECT_LT(distance(localizer.best().pose_M(), truth), 0.1);
+  // Anywhere along it looks alike.
+  localizer.forget();
+  wait();
+  EXPECT_EQ(localizer.fix(), MapFix::NotUnique) << localizer.sentence();
+}
+
 TEST(MapLocalizer, ARobotThatWasPutElsewhereIsNotBelievedUntilItsPlaceIsFound) {
   MapLocalizer localizer(rooms_at({{0, 0}}));
   const Pose2 truth{7, -0.4, 2.2};

@@ -61,7 +61,7 @@ TEST_F(MapFile, ListsAndFlagsMayBeWrittenInAnyYaml) {
 
 TEST_F(MapFile, ComesBackAsItWasWritten) {
   OccupancyMap map(0.05);
-  for (int k = 0; k < 100; ++k) map.mark_wall({-3 + 0.05 * k, 1.02});
+  for (int k = 0; k < 100; ++k) map.mark_wall({-2.975 + 0.05 * k, 1.02});
   map.mark_free({0.01, 0.01});
   write_map(map, folder_ / "again.yaml");
   const OccupancyMap again = read_map(folder_ / "again.yaml");
@@ -72,6 +72,23 @@ TEST_F(MapFile, ComesBackAsItWasWritten) {
     if (tally.occupied()) ++walls;
   });
   EXPECT_EQ(walls, 100U);
+}
+
+TEST_F(MapFile, OnlyTheFacesOfThickWallsAreSeen) {
+  OccupancyMap map(0.05);
+  for (int j = 0; j < 10; ++j) {
+    for (int i = 0; i < 20; ++i) {
+      if (j < 6) {
+        map.mark_wall(map.centre({i, j}));
+      } else {
+        map.mark_free(map.centre({i, j}));
+      }
+    }
+  }
+  EXPECT_EQ(seen_walls(map).walls().size(), 20U);
+  OccupancyMap bare(0.05);
+  for (int i = 0; i < 20; ++i) bare.mark_wall(bare.centre({i, 0}));
+  EXPECT_EQ(seen_walls(bare).walls().size(), 20U);
 }
 
 TEST_F(MapFile, BadFilesAreRefusedWithASentence) {

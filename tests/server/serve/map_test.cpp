@@ -72,7 +72,7 @@ TEST_F(MapTest, FoxglovesInitialPoseIsTaken) {
 TEST_F(MapTest, AResetKeepsTheMapAndAnotherWorldHasNone) {
   ASSERT_EQ(post("/session/control", {{"action", "reset"}}), 200);
   EXPECT_EQ(get("/session")["map"], "room.yaml");
-  ASSERT_EQ(post("/session/scenario", {{"scenario", "case1"}}), 200);
+  ASSERT_EQ(post("/session/control", {{"action", "load"}, {"scenario", "case1"}}), 200);
   EXPECT_TRUE(get("/session")["map"].is_null());
   EXPECT_EQ(ask("GET", "/session/map").status, 404);
   const auto refused = ask("PUT", "/session/pose", R"({"x":1,"y":2,"heading":0})");
