@@ -59,14 +59,24 @@ class BodyFollower {
  private:
   BodyCommand towards_strip(const BodyJoints& now) const;
   /// `wanted` if it keeps the margin; else its arm or its base alone, or rest: the first that keeps
-  /// it, or the one with the most room.
+  /// it, or the one with the most room. Where something comes, a base may also get out of its way.
   BodyCommand kept_clear(const BodyJoints& now,
                          const BodyCommand& wanted,
                          std::span<const Solid> solids) const;
-  /// [m] Beyond the margins, while `command` goes on for the horizon.
+  /// Forwards or backwards out of the way of what comes; rest where nothing comes, or where neither
+  /// helps.
+  BodyCommand out_of_the_way(const BodyJoints& now, std::span<const Solid> solids) const;
+  /// Which solids count, for how long [s], and at how many moments.
+  struct Look {
+    enum class Of : std::uint8_t { All, Present, Moving } of = Of::All;
+    double horizon = 0;
+    int looks = 0;
+  };
+  /// [m] Beyond the margins, while `command` goes on.
   double least_room(const BodyJoints& now,
                     const BodyCommand& command,
-                    std::span<const Solid> solids) const;
+                    std::span<const Solid> solids,
+                    const Look& look) const;
 
   MobileArm body_;
   BodyLimits limits_;

@@ -1,6 +1,8 @@
 #include "algo/arm/reach_task.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace algo {
@@ -55,9 +57,10 @@ void ReachTask::ask(ReachQuestion::Kind kind,
                             .now = now,
                             .hand_W = goal_.hand_W,
                             .base_goal = goal_.then.value_or(SetGoal{}),
-                            .solids = {solids.begin(), solids.end()},
                             .seed = whole ? seed_ + failed : seed_,
                             .rules = rules_};
+  const auto stands = [](const Solid& solid) { return solid.velocity_W.isZero(); };
+  std::ranges::copy_if(solids, std::back_inserter(question_->solids), stands);
   question_->rules.arm_angle = goal_.arm_angle;
   if (whole) question_->rules.skip += kTriedPlaces * failed;
   state_ = State::Plans;
@@ -105,19 +108,22 @@ void ReachTask::follow(const BodyJoints& now) {
   follower_.begin(path);
 }
 
-BodyCommand ReachTask::update(const BodyJoints& now, std::span<const Solid> solids, double dt) {
+BodyCommand ReachTask::update(const BodyJoints& now,
+                              std::span<const Solid> near,
+                              std::span<const Solid> all,
+                              double dt) {
   BodyCommand rest{.state = FollowState::Waits};
   if (question_ || state_ == State::GivenUp || legs_.empty()) return rest;
-  BodyCommand command = follower_.update(now, solids, dt);
+  BodyCommand command = follower_.update(now, near, dt);
   if (command.state == FollowState::Arrived && leg_ + 1 < legs_.size()) {
-    next_leg(now, solids);
+    next_leg(now, all);
     return {};
   }
   if (command.state == FollowState::Arrived && goal_.then && !returns_ && !goal_.carries) {
     returns_ = true;
     plans_ = 0;
     legs_.clear();
-    ask(way(), now, solids);
+    ask(way(), now, all);
     return rest;
   }
   if (command.state == FollowState::Arrived) {
@@ -129,7 +135,7 @@ BodyCommand ReachTask::update(const BodyJoints& now, std::span<const Solid> soli
   state_ = still_ > 0 ? State::Waits : State::Goes;
   if (still_ > kPatience) {
     still_ = 0;
-    ask_anew(now, solids);
+    ask_anew(now, all);
   }
   return command;
 }

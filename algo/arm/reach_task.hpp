@@ -42,8 +42,12 @@ class ReachTask {
   /// The answer to question(), for a body at `now`. May leave another question.
   void take(ReachPlan found, const BodyJoints& now, std::span<const Solid> solids);
 
-  /// One tick of `dt` [s] for a body at `now`. Allocates only where it asks and where a leg begins.
-  BodyCommand update(const BodyJoints& now, std::span<const Solid> solids, double dt);
+  /// One tick of `dt` [s] for a body at `now`: it keeps clear of what is `near`, and plans anew
+  /// with `all`. Allocates only where it asks and where a leg begins.
+  BodyCommand update(const BodyJoints& now,
+                     std::span<const Solid> near,
+                     std::span<const Solid> all,
+                     double dt);
 
   /// Of the strip, in one tick.
   void set_sweeps(int sweeps) { follower_.set_sweeps(sweeps); }
@@ -62,6 +66,7 @@ class ReachTask {
  private:
   /// What is asked for now: the way to the goal of the hand or of the base.
   ReachQuestion::Kind way() const;
+  /// Leaves out what moves: it will be elsewhere.
   void ask(ReachQuestion::Kind kind, const BodyJoints& now, std::span<const Solid> solids);
   /// Asks for the whole way again, with other places first, or gives up.
   void ask_anew(const BodyJoints& now, std::span<const Solid> solids);

@@ -20,8 +20,6 @@ constexpr double kMostReachSpeed = 0.4;  // [m/s] of the base: it can stop withi
 constexpr double kMostReachTurn = 0.8;   // [rad/s]
 constexpr double kSight = 3;             // [m] of the task, from R
 constexpr double kSameBody = 0.15;       // [m] a piece so near to a moving body is of it
-constexpr double kForesight = 2;         // [s] of a moving thing's way that is kept free
-constexpr int kForeseen = 4;             // of those places
 constexpr double kShownNear = 0.5;       // [m] of a link to a thing
 constexpr double kShowPlan = 1;          // [s] between two showings of one plan
 
@@ -73,20 +71,6 @@ ReachRules session_rules() {
   return rules;
 }
 
-/// Where something will be counts as taken already: a base that has stopped in somebody's way does
-/// not get out of it.
-void keep_ahead_free(std::vector<Solid>& near) {
-  const std::size_t count = near.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    if (near[i].velocity_W.isZero()) continue;
-    for (int k = 1; k <= kForeseen; ++k) {
-      Solid then = near[i].after(kForesight * k / kForeseen);
-      then.velocity_W.setZero();
-      near.push_back(then);
-    }
-  }
-}
-
 }  // namespace
 
 ArmBehaviour::ArmBehaviour(const RobotSpec& spec,
@@ -110,7 +94,8 @@ void ArmBehaviour::reset(const Pose2& /*start_W*/) {
   shown_plan_ = 0;
   now_.reset();
   points_.reset();
-  movers_.reset();
+  ahead_.reset();
+  beside_.reset();
   hand_goal_.reset();
   carry_goal_.reset();
   joint_goal_.reset();
@@ -132,29 +117,39 @@ void ArmBehaviour::sense(const Resource& in) {
   now_.reset();
   if (!finite(seen.odometry.pose) || !std::isfinite(seen.stamp)) return;
   look(seen);
+  unseen_.clear();
+  for (MoverWatch* watch : {&ahead_, &beside_}) {
+    watch->each(seen.stamp, [this](const Track& track) { see_move(track); });
+  }
   known_.find_near(seen.odometry.pose.position(), kSight, near_);
-  movers_.each(seen.stamp, [&](const Track& track) {
-    for (Solid& solid : near_) {
-      const double apart = (solid.centre_W - track.position_W).norm();
-      if (apart < track.radius + kSameBody) solid.velocity_W = track.velocity_W;
-    }
-  });
+  near_.insert(near_.end(), unseen_.begin(), unseen_.end());
   keep_ahead_free(near_);
   if (!seen.joints) return;
   const ArmJoints q = joints_of(seen.joints->position);
   if (q.allFinite()) now_ = body_joints(seen.odometry.pose, q);
 }
 
+/// A body that no scanner sees any more goes on.
+void ArmBehaviour::see_move(const Track& track) {
+  if (known_.set_moving(track.position_W, track.radius + kSameBody, track.velocity_W)) return;
+  Solid& body = unseen_.emplace_back();
+  body.centre_W = track.position_W;
+  body.rounding = track.radius;
+  body.velocity_W = track.velocity_W;
+}
+
 /// Each beam is mapped from where the robot was when it was fired.
 void ArmBehaviour::look(const Observation& seen) {
   points_.follow(seen.odometry.pose, seen.stamp);
   const LaserScan* const ahead = front_scan(seen);
+  MoverWatch* other = &beside_;  // a tracker follows one scanner
   for (const LaserScan& scan : seen.scans) {
     const bool readable = scan.size() > 0 && std::isfinite(scan.stamp) && all_finite(scan.ranges);
     if (!readable) continue;  // NaN must not enter
     const Pose2 sensor_W = points_.map(scan);
     known_.see(scan, sensor_W, points_.points_W());
-    if (&scan == ahead) movers_.take(scan, sensor_W, points_.points_W());
+    MoverWatch* const watch = &scan == ahead ? &ahead_ : std::exchange(other, nullptr);
+    if (watch != nullptr) watch->take(scan, sensor_W, points_.points_W());
   }
 }
 
@@ -195,7 +190,7 @@ std::optional<ArmBehaviour::Drive> ArmBehaviour::reach(const Resource& in) {
     begun_ = true;
   }
   task_.set_sweeps(static_cast<int>((*in.parameters)[kArmSweeps]));
-  const BodyCommand command = task_.update(*now_, near_, in.dt);
+  const BodyCommand command = task_.update(*now_, near_, known_.all(), in.dt);
   if (task_.question() != nullptr && !asked_) {
     thinker_->ask(body_, *task_.question());
     asked_ = in.stamp;

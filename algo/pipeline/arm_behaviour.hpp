@@ -67,6 +67,7 @@ class ArmBehaviour final : public Behaviour {
   std::optional<Drive> turn(const Resource& in);
   void sense(const Resource& in);
   void look(const Observation& seen);
+  void see_move(const Track& track);
   void show_things(Telemetry& t) const;
 
   RobotSpec spec_;
@@ -75,7 +76,8 @@ class ArmBehaviour final : public Behaviour {
   std::unique_ptr<ReachThinker> thinker_;
   KnownThings known_{};
   ScanPoints points_{};
-  MoverWatch movers_{};  // of the scanner ahead
+  MoverWatch ahead_{};   // of the scanner ahead,
+  MoverWatch beside_{};  // and of the first other one
   ArmGuard guard_;
   ReachTask task_;
 
@@ -90,6 +92,7 @@ class ArmBehaviour final : public Behaviour {
   // Of the tick:
   double stamp_ = 0;                 // [s] run clock
   std::optional<BodyJoints> now_{};  // none without a reading of the joints
+  std::vector<Solid> unseen_{};      // bodies that have moved out of sight
   std::vector<Solid> near_{};
   std::optional<SetHandGoal> hand_goal_{};
   std::optional<SetGoal> carry_goal_{};

@@ -22,7 +22,7 @@ struct ReachDrive {
     answer_at_once(task, scene.body, q, scene.solids);
   }
   void tick() {
-    const algo::BodyCommand command = task.update(q, scene.solids, kReachTick);
+    const algo::BodyCommand command = task.update(q, scene.solids, scene.solids, kReachTick);
     answer_at_once(task, scene.body, q, scene.solids);
     waited = waited || task.state() == ReachTask::State::Waits;
     q = moved(q, command, kReachTick);
@@ -107,11 +107,29 @@ TEST(ReachTask, GivesUpWithTheReason) {
   EXPECT_EQ(drive.q, drive.scene.start);
 }
 
+TEST(ReachTask, PlansThroughWhatMoves) {
+  Scene scene = reach_scene::over_a_table();
+  algo::Solid walker;
+  walker.centre_W = {0.8, 0};
+  walker.rounding = 0.25;
+  for (const double speed : {0.0, 0.3}) {
+    walker.velocity_W = {0, speed};
+    scene.solids.push_back(walker);
+    ReachTask task(scene.body, {});
+    task.begin(scene.start, {scene.hand_W}, scene.solids, 5);
+    ASSERT_NE(task.question(), nullptr);
+    const bool counts = task.question()->solids.size() == scene.solids.size();
+    EXPECT_EQ(counts, speed == 0) << speed;
+    scene.solids.pop_back();
+  }
+}
+
 TEST(ReachTask, ATickOfALegAllocatesNothing) {
   ReachDrive drive(reach_scene::free_goal(0.95));
   drive.run_until([&] { return drive.q[0] > 0.5; });
   const auto before = allocations::count();
-  for (int n = 0; n < 5; ++n) drive.task.update(drive.q, drive.scene.solids, kReachTick);
+  for (int n = 0; n < 5; ++n)
+    drive.task.update(drive.q, drive.scene.solids, drive.scene.solids, kReachTick);
   EXPECT_EQ(allocations::count(), before);
 }
 

@@ -139,6 +139,16 @@ TEST_F(ArmRun, ARobotFetchesPastAPersonWhoWalks) {
   EXPECT_EQ(out.words, "The robot is back from where its hand has been.");
 }
 
+TEST_F(ArmRun, APersonWhoWalksIntoTheRobotInBulletIsNotTouched) {
+  RunSpec spec = arm_spec("arm_fetch", "bullet");
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+    spec.seed = seed;
+    const ArmOutcome out = run_arm(spec);
+    EXPECT_EQ(out.result.run.outcome, algo::Outcome::Reached)
+        << seed << ": " << out.result.run.reason;
+  }
+}
+
 TEST_F(ArmRun, AGoalOutOfReachIsGivenUpInWords) {
   RunSpec spec = arm_spec("arm_table");
   spec.scenario.hand_goal->position_W.z() = 3;
