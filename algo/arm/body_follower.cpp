@@ -113,12 +113,14 @@ BodyCommand BodyFollower::update(const BodyJoints& now, std::span<const Solid> s
 
 BodyCommand BodyFollower::kept_clear(const BodyJoints& now,
                                      const BodyCommand& wanted,
-                                     std::span<const Solid> solids) const {
+                                     std::span<const Solid> solids,
+                                     bool together) const {
   BodyCommand arm_alone = wanted;
   arm_alone.base = {};
   BodyCommand base_alone = wanted;
   base_alone.rates.setZero();
   const BodyCommand rest{.state = FollowState::Waits};
+  if (together) arm_alone = base_alone = rest;
   const std::array candidates{wanted, arm_alone, base_alone, rest};
   const int looks = static_cast<int>(std::round(rules_.horizon / kLook));
   const Look near{.horizon = rules_.horizon, .looks = looks};
@@ -131,6 +133,7 @@ BodyCommand BodyFollower::kept_clear(const BodyJoints& now,
     best = &candidate;
     best_room = room;
   }
+  if (!rules_.gives_way) return *best;
   const BodyCommand aside = out_of_the_way(now, solids);
   return aside.base.v != 0 ? aside : *best;
 }

@@ -28,6 +28,11 @@ constexpr LayerInfo kStripLayer{.name = "arm.strip",
                                 .kind = LayerKind::Polyline,
                                 .tone = Tone::Elastic,
                                 .axes = 3};
+constexpr LayerInfo kPathLayer{.name = "arm.path",
+                               .label = "Path that the hand shall follow",
+                               .kind = LayerKind::Polyline,
+                               .tone = Tone::Plan,
+                               .axes = 3};
 constexpr LayerInfo kNearLayer{.name = "arm.near",
                                .label = "Nearest things of the links",
                                .kind = LayerKind::Arrows,
@@ -47,6 +52,7 @@ Pose3 pose_of(const SetHandGoal& goal) {
 ReachGoal goal_of(const std::optional<SetHandGoal>& hand, const std::optional<SetGoal>& carry) {
   if (!hand) return {.then = carry, .carries = true};
   return {.hand_W = pose_of(*hand),
+          .path_W = hand->path_W,
           .arm_angle = hand->arm_angle,
           .base_stays = hand->base_stays,
           .then = hand->then};
@@ -190,6 +196,7 @@ std::optional<ArmBehaviour::Drive> ArmBehaviour::reach(const Resource& in) {
     begun_ = true;
   }
   task_.set_sweeps(static_cast<int>((*in.parameters)[kArmSweeps]));
+  task_.set_hand_speed((*in.parameters)[kHandSpeed]);
   const BodyCommand command = task_.update(*now_, near_, known_.all(), in.dt);
   if (task_.question() != nullptr && !asked_) {
     thinker_->ask(body_, *task_.question());
@@ -262,6 +269,11 @@ void ArmBehaviour::show(Telemetry& t) {
     shown_plan_ = arm.plan;
   }
   show_things(t);
+  Layer& path = add_layer(t.layers, kPathLayer);
+  if (hand_goal_ && !hand_goal_->path_W.empty()) {
+    put(path, hand_goal_->position_W);
+    for (const Vec3& point_W : hand_goal_->path_W) put(path, point_W);
+  }
   Layer& strip = add_layer(t.layers, kStripLayer);
   if (!has_plan || !now_) return;
   for (const BodyFrames& ahead : task_.strip().frames()) put(strip, ahead.hand());

@@ -28,8 +28,18 @@ inline constexpr ParameterInfo kArmSweeps{
     .step = 1,
     .initial = 20,
     .help = "How often the strip of arm and base is relaxed in one tick."};
+inline constexpr ParameterInfo kHandSpeed{
+    .name = "arm.hand_speed",
+    .label = "Speed of the hand on its path",
+    .unit = "m/s",
+    .min = 0.01,
+    .max = 0.3,
+    .step = 0.01,
+    .initial = 0.1,
+    .help = "How fast the hand goes along the path behind its goal."};
 /// The behaviour's parameters.
-inline constexpr auto kArmParameters = std::to_array<const ParameterInfo*>({&kArmSweeps});
+inline constexpr auto kArmParameters =
+    std::to_array<const ParameterInfo*>({&kArmSweeps, &kHandSpeed});
 
 /// Wants the base only for a goal of the hand, or to carry something. Before the behaviour that
 /// drives to the base's goals.

@@ -172,8 +172,13 @@ std::optional<std::string> Pipeline::refusal_of(const SetHandGoal& hand) const {
   if (arm_ == nullptr) return kNoArm;
   const Quaternion& a = hand.attitude_W;
   const double length = std::sqrt(a.w * a.w + a.x * a.x + a.y * a.y + a.z * a.z);
-  if (!hand.position_W.allFinite() || !std::isfinite(hand.arm_angle.value_or(0))) {
+  const auto good = [](const Vec3& point_W) { return point_W.allFinite(); };
+  if (!good(hand.position_W) || !std::ranges::all_of(hand.path_W, good) ||
+      !std::isfinite(hand.arm_angle.value_or(0))) {
     return "The hand's goal must be finite numbers.";
+  }
+  if (hand.path_W.size() > kMostPathPoints) {
+    return "The hand's path has more than " + std::to_string(kMostPathPoints) + " points.";
   }
   if (!(std::abs(length - 1) < kUnitError)) return "The hand's attitude must be a unit quaternion.";
   return hand.then ? refusal_of(*hand.then) : std::nullopt;

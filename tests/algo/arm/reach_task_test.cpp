@@ -107,6 +107,29 @@ TEST(ReachTask, GivesUpWithTheReason) {
   EXPECT_EQ(drive.q, drive.scene.start);
 }
 
+TEST(ReachTask, FollowsAPathWithTheHandFromItsGoalOnAndComesBack) {
+  Scene scene = reach_scene::over_a_table();
+  algo::ReachGoal goal{.hand_W = scene.hand_W};
+  const algo::Vec3 there_W = scene.hand_W.translation();
+  goal.path_W = {there_W + algo::Vec3(0, 0.10, 0), there_W + algo::Vec3(0, 0.10, 0.05)};
+  ReachTask task(scene.body, {});
+  BodyJoints q = scene.start;
+  task.begin(q, goal, scene.solids, 5);
+  answer_at_once(task, scene.body, q, scene.solids);
+  bool followed = false;
+  for (double time = 0; time < 120 && task.state() != ReachTask::State::Arrived;
+       time += kReachTick) {
+    ASSERT_NE(task.state(), ReachTask::State::GivenUp) << task.words();
+    const auto command = task.update(q, scene.solids, scene.solids, kReachTick);
+    answer_at_once(task, scene.body, q, scene.solids);
+    followed = followed || task.words() == "The robot follows its path with the hand.";
+    q = moved(q, command, kReachTick);
+  }
+  EXPECT_TRUE(followed);
+  EXPECT_EQ(task.words(), "The hand is at the end of its path.");
+  EXPECT_LT((body_frames(scene.body, q).hand() - goal.path_W.back()).norm(), 0.005);
+}
+
 TEST(ReachTask, PlansThroughWhatMoves) {
   Scene scene = reach_scene::over_a_table();
   algo::Solid walker;
