@@ -102,6 +102,7 @@ struct Quaternion {
   bool operator==(const Quaternion&) const = default;
 };
 inline constexpr std::size_t kMostPathPoints = 100;
+inline constexpr double kLongestPath = 30;  // [m] of the hand: a plan takes time for each metre
 /// Brings the hand to a pose, with arm and base.
 struct SetHandGoal {
   Vec3 position_W{0, 0, 0};

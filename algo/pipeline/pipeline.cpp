@@ -57,6 +57,17 @@ bool within_unit(double axis) {
   return axis >= -1.0 && axis <= 1.0;
 }  // false for NaN
 
+/// [m] Of the hand's way from its goal on.
+double path_length(const SetHandGoal& goal) {
+  double length = 0;
+  Vec3 last = goal.position_W;
+  for (const Vec3& point : goal.path_W) {
+    length += (point - last).norm();
+    last = point;
+  }
+  return length;
+}
+
 }  // namespace
 
 Pipeline::Pipeline(const PipelineConfig& config,
@@ -180,6 +191,9 @@ std::optional<std::string> Pipeline::refusal_of(const SetHandGoal& hand) const {
   if (hand.path_W.size() > kMostPathPoints) {
     return "The hand's path has more than " + std::to_string(kMostPathPoints) + " points.";
   }
+  if (!(path_length(hand) <= kLongestPath))
+    return "The hand's path is longer than " + std::to_string(static_cast<int>(kLongestPath)) +
+           " m.";
   if (!(std::abs(length - 1) < kUnitError)) return "The hand's attitude must be a unit quaternion.";
   return hand.then ? refusal_of(*hand.then) : std::nullopt;
 }
