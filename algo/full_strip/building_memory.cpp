@@ -4,9 +4,14 @@
 #include <algorithm>
 #include <new>
 
+#include "algo/full_strip/mixed_beam.hpp"
+
 namespace algo {
 namespace {
 
+constexpr std::uint8_t kDoubtHere = 8;    // raised by a mixed beam where it ends,
+constexpr std::uint8_t kDoubtBeside = 4;  // and in the cells around: such ends lie far apart
+constexpr std::uint8_t kMostDoubts = 40;
 constexpr std::size_t kTileCount = std::size_t{BuildingMemory::kTiles} * BuildingMemory::kTiles;
 
 }  // namespace
@@ -32,6 +37,7 @@ BuildingMemory::Tile& BuildingMemory::get(int column, int row) {
   tile.occupied.fill(0);
   tile.clearance.fill(kUnknown);
   tile.seen.fill(0);
+  tile.doubts.fill(0);
   tile.column = static_cast<std::int16_t>(column);
   tile.row = static_cast<std::int16_t>(row);
   tile.used = true;
@@ -64,6 +70,22 @@ void BuildingMemory::look(const LaserScan& scan, const Pose2& sensor_W) {
       if (tile == nullptr || tile->column != column || tile->row != row) tile = &get(column, row);
       std::uint8_t& crossings = tile->seen[within(c)];
       if (crossings < kMostCrossings) ++crossings;
+      std::uint8_t& doubts = tile->doubts[within(c)];
+      if (doubts > 0) --doubts;
+    }
+    if (is_mixed(scan, i) && scan.ranges[i] < kLook) {
+      doubt(cell_of(sensor_W.position() + scan.ranges[i] * way));
+    }
+  }
+}
+
+void BuildingMemory::doubt(Cell c) {
+  for (int y = -1; y <= 1; ++y) {
+    for (int x = -1; x <= 1; ++x) {
+      const Cell at{c.column + x, c.row + y};
+      std::uint8_t& doubts = get(tile_of(at.column), tile_of(at.row)).doubts[within(at)];
+      const int more = x == 0 && y == 0 ? kDoubtHere : kDoubtBeside;
+      doubts = static_cast<std::uint8_t>(std::min<int>(kMostDoubts, doubts + more));
     }
   }
 }

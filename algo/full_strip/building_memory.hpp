@@ -34,6 +34,7 @@ class BuildingMemory {
     /// [cm] The largest distance to an obstacle within each coarse cell, or kUnknown.
     std::array<std::uint8_t, kCoarseSide * kCoarseSide> clearance{};
     std::array<std::uint8_t, kCoarseSide * kCoarseSide> seen{};  // beams that have crossed it
+    std::array<std::uint8_t, kCoarseSide * kCoarseSide> doubts{};
     std::int16_t column = 0, row = 0;  // its place: the plane's tiles share memory periodically
     bool used = false;
   };
@@ -54,7 +55,7 @@ class BuildingMemory {
   Tile& get(int column, int row);
 
   /// Marks the coarse cells that the beams of a scan from `sensor_W` cross, up to kLook. A beam
-  /// does not cross the cell in which it ends.
+  /// does not cross the cell in which it ends; a mixed beam raises doubts there and around.
   void look(const LaserScan& scan, const Pose2& sensor_W);
   static constexpr double kLook = 8.0;  // [m]
 
@@ -65,6 +66,12 @@ class BuildingMemory {
     return tile != nullptr ? tile->seen[within(c)] : std::uint8_t{0};
   }
   static constexpr std::uint8_t kMostCrossings = 255;
+  /// True if something may stand there that no beam has shown well: its end was mixed, and no beam
+  /// has crossed the place since.
+  bool doubtful(Cell c) const {
+    const Tile* const tile = find(tile_of(c.column), tile_of(c.row));
+    return tile != nullptr && tile->doubts[within(c)] >= kDoubtful;
+  }
   /// [cm] or kUnknown.
   std::uint8_t clearance(Cell c) const {
     const Tile* const tile = find(tile_of(c.column), tile_of(c.row));
@@ -87,6 +94,8 @@ class BuildingMemory {
   Cell high() const { return high_; }
 
  private:
+  static constexpr std::uint8_t kDoubtful = 8;  // doubts of a cell
+  void doubt(Cell c);
   static std::size_t place(int column, int row) {
     constexpr auto kMask = static_cast<unsigned>(kTiles - 1);
     return (static_cast<unsigned>(row) & kMask) * static_cast<std::size_t>(kTiles) +

@@ -150,7 +150,8 @@ float Planner::new_cost(const PlanWorld& world, Id id) {
   if (d < step_.least) return near_robot(id) ? kLeaving : -1;
   const Cell cell = is_fine(id) ? BuildingMemory::cell_of(position_W(id)) : cell_of(id);
   const double price = world.memory.seen(cell) ? 1 : StepCost::kUnseen;
-  return static_cast<float>(price * step_.of(d));
+  const double doubt = world.memory.doubtful(cell) ? StepCost::kDoubt : 0;
+  return static_cast<float>(price * step_.of(d) + doubt);
 }
 
 /// The nearest point with room to stand, preferably a seen one. An unseen point may be the inside
