@@ -231,6 +231,7 @@ void Planner::start(const PlanWorld& world,
   entries_.clear();
   std::ranges::fill(buckets_, 0U);
   bucket_ = 0;
+  closest_W_ = goal_W_;
   push(root_, 0, root_);
   state_ = State::Searching;
 }
@@ -247,6 +248,10 @@ Planner::State Planner::search(const PlanWorld& world, int budget) {
       continue;
     }
     point.closed = true;
+    const Vec2 here_W = position_W(*next);
+    if ((here_W - robot_W_).squaredNorm() < (closest_W_ - robot_W_).squaredNorm()) {
+      closest_W_ = here_W;
+    }
     if (*next == robot_) return state_ = State::Found;
     if (is_fine(*next)) {
       expand_fine(world, *next);

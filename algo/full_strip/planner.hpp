@@ -55,6 +55,9 @@ class Planner {
   /// True if the goal was kept although it has no room.
   bool goal_tight() const { return goal_tight_; }
 
+  /// The place nearest to `robot_W` of all that the search has come to.
+  const Vec2& closest_W() const { return closest_W_; }
+
   /// A path found.
   struct Path {
     Recycled<Vec2> points_W{};  // robot first, at most one point per lattice step
@@ -124,6 +127,7 @@ class Planner {
   Cell corner_{};        // the same, in coarse cells
   Vec2 robot_W_{0, 0};
   Vec2 goal_W_{0, 0};
+  Vec2 closest_W_{0, 0};
   Id robot_ = 0;
   Id root_ = 0;
   Cell low_{}, high_{};                       // bounds of the coarse lattice

@@ -26,9 +26,12 @@ constexpr double kGives = 0.08;   // [m] by which the strip stays inside its res
 constexpr double kSameWay = 0.6;  // [m] from the old strip's end: a path past it goes on from there
 constexpr double kAgainAfter = 1.0;     // [s] after a search without a way
 constexpr double kDoubtTime = 1.5;      // [s] for which the map drops what it doubts
-constexpr double kWatchFrom = 1.2;      // [m] before a place that was shut
+constexpr double kWatchFrom = 1.2;      // [m] before a place that was shut,
+constexpr double kWatchTime = 20;       // [s]
 constexpr double kThere = 0.3;          // [m]
-constexpr std::uint8_t kLongSeen = 60;  // beams through a place that was free for long
+constexpr std::uint8_t kLongSeen = 30;  // beams through a place that was free for long,
+constexpr double kSeenBefore = 0.3;     // [m] on the strip from here
+constexpr double kSeenBehind = 0.9;     // [m] to there
 
 }  // namespace
 
@@ -44,8 +47,8 @@ void StripRoute::set_goal(const Vec2& goal_W, double now) {
   planner_.reset();
   failures_ = 0;
   closure_.reset();
-  watched_W_.reset();
-  going_back_ = false;
+  watch_.reset();
+  aim_ = Aim::Goal;
   doubts_ = false;
   goal_taken_ = false;
   tight_since_.reset();
@@ -117,14 +120,13 @@ void StripRoute::plan(const PlanWorld& world, const Vec2& here_W, double now) {
   const bool urgent = strip_.empty() || broken_at_ >= 0;
   switch (planner_.search(world, urgent ? kExpansionsNow : kExpansions)) {
     case Planner::State::Found:
-      if (going_back_) {
-        go_back(world, here_W);
-        return;
+      if (aim_ == Aim::Goal) {
+        failures_ = 0;
+        if (watch_) strip_.clear();  // it leads elsewhere
+        watch_.reset();
+        closure_.reset();
       }
-      failures_ = 0;
-      if (watched_W_) strip_.clear();  // it led back
-      watched_W_.reset();
-      take_plan(world, here_W);
+      if (aim_ != Aim::Reach) take_plan(world, here_W);
       return;
     case Planner::State::NoWay:
       fail(world, here_W, now);
@@ -135,7 +137,7 @@ void StripRoute::plan(const PlanWorld& world, const Vec2& here_W, double now) {
 }
 
 void StripRoute::start_search(const PlanWorld& world, const Vec2& here_W, double now) {
-  going_back_ = false;
+  aim_ = Aim::Goal;
   const double patience = ProgressWatch::time_for(kTryTight, settings_.max_v);
   const bool try_tight = !tight_since_ || now - *tight_since_ < patience;
   planner_.start(world, here_W, *goal_W_, step_cost(), settings_.round, try_tight);
@@ -143,19 +145,28 @@ void StripRoute::start_search(const PlanWorld& world, const Vec2& here_W, double
   next_plan_ = now + settings_.plan_period;
 }
 
-/// Remembers where a strip broke at a place that had been free for long: a door has closed.
+/// Remembers where a strip broke at a place that had been free for long, before and behind it too:
+/// a door has closed. Behind a wall that is seen for the first time, nothing was seen before.
 void StripRoute::note_closure(const PlanWorld& world) {
-  if (broken_at_ < 0 || strip_.empty()) return;
-  const Vec2 at_W = strip_.at(broken_at_);
-  if (world.memory.crossings(BuildingMemory::cell_of(at_W)) < kLongSeen) return;
-  closure_ = {at_W, strip_.at(std::max(0.0, broken_at_ - kWatchFrom))};
+  if (broken_at_ < 0 || strip_.empty() || watch_) return;
+  for (double s = broken_at_ - kSeenBefore; s <= broken_at_ + kSeenBehind;
+       s += NodeStrip::kSpacing) {
+    const Vec2 at_W = strip_.at(std::max(0.0, s));
+    if (world.memory.crossings(BuildingMemory::cell_of(at_W)) < kLongSeen) return;
+  }
+  closure_ = Watch{strip_.at(std::max(0.0, broken_at_ - kWatchFrom)), strip_.at(broken_at_), {}};
 }
 
-/// A search has found no way. The first one in a row makes the map drop its doubtful cells. After
-/// the second there is no way, and the robot goes back to a door that has closed.
+/// A search has found no way. The first one to the goal in a row makes the map drop its doubtful
+/// cells. After the second there is no way.
 void StripRoute::fail(const PlanWorld& world, const Vec2& here_W, double now) {
-  if (going_back_) {  // there is no way back either
-    going_back_ = false;
+  if (aim_ == Aim::Reach) {
+    watch_ = Watch{planner_.closest_W(), *goal_W_, {}};
+    search_for_watch(world, here_W);
+    return;
+  }
+  if (aim_ == Aim::Watch) {
+    watch_.reset();
     closure_.reset();
     next_plan_ = now + kAgainAfter;
     return;
@@ -167,28 +178,37 @@ void StripRoute::fail(const PlanWorld& world, const Vec2& here_W, double now) {
     return;
   }
   next_plan_ = now + kAgainAfter;
-  broken_at_ = -1;
-  if (watched_W_) {
-    // On the way to the closure, or there.
-    if (closure_ && (closure_->before_W - here_W).norm() < kThere) strip_.clear();
+  wait_for_way(world, here_W, now);
+}
+
+/// A door may open: the robot waits at one that it saw shut, for a while, and then at the place
+/// within reach that is nearest to the goal.
+void StripRoute::wait_for_way(const PlanWorld& world, const Vec2& here_W, double now) {
+  if (!watch_) {
+    strip_.clear();
+    broken_at_ = -1;
+    path_.points_W.clear();
+    watch_ = closure_;
+  }
+  if (!watch_) {
+    aim_ = Aim::Reach;
+    planner_.start(world, *goal_W_, here_W, step_cost(), settings_.round, false);
+    return;
+  }
+  if (!watch_->since && (watch_->from_W - here_W).norm() < kThere) watch_->since = now;
+  if (!watch_->since) {
+    search_for_watch(world, here_W);
     return;
   }
   strip_.clear();
-  path_.points_W.clear();
-  if (!closure_ || (closure_->before_W - here_W).norm() < kThere) {
-    if (closure_) watched_W_ = closure_->at_W;
-    return;
-  }
-  going_back_ = true;
-  planner_.start(world, here_W, closure_->before_W, step_cost(), settings_.round, false);
+  if (!closure_ || now - *watch_->since < kWatchTime) return;
+  watch_.reset();
+  closure_.reset();
 }
 
-/// Lays the strip to the place before the closure.
-void StripRoute::go_back(const PlanWorld& world, const Vec2& here_W) {
-  going_back_ = false;
-  watched_W_ = closure_->at_W;
-  take_plan(world, here_W);
-  goal_taken_ = false;
+void StripRoute::search_for_watch(const PlanWorld& world, const Vec2& here_W) {
+  aim_ = Aim::Watch;
+  planner_.start(world, here_W, watch_->from_W, step_cost(), settings_.round, false);
 }
 
 /// Makes the plan the strip if there is none, or if it is clearly better than the present one.
@@ -205,7 +225,8 @@ void StripRoute::take_plan(const PlanWorld& world, const Vec2& here_W) {
     candidate_.lay(line_W_);
     candidate_.follow(here_W);
   }
-  const bool was_taken = std::exchange(goal_taken_, planner_.goal_taken());
+  const bool taken = aim_ == Aim::Goal && planner_.goal_taken();
+  const bool was_taken = std::exchange(goal_taken_, taken);
   if (!is_better(world.map, was_taken)) return;
   std::swap(strip_, candidate_);
   broken_at_ = -1;

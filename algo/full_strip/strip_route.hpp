@@ -2,6 +2,7 @@
 // that lies along it.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "algo/full_strip/node_strip.hpp"
@@ -48,8 +49,10 @@ class StripRoute {
   bool no_way() const { return failures_ >= kSurely; }
   /// A search has just found no way, and the map should drop what it knows on little evidence.
   bool doubts() const { return doubts_; }
-  /// Without a way: the place where the way was shut, which the robot should watch.
-  const std::optional<Vec2>& watched_W() const { return watched_W_; }
+  /// Without a way, at the place to wait at: the point that the robot should look at.
+  std::optional<Vec2> watched_W() const {
+    return watch_ && strip_.empty() ? std::optional(watch_->at_W) : std::nullopt;
+  }
   /// There is no strip yet, and the search goes on.
   bool waits_for_plan() const {
     return strip_.empty() && !no_way() && planner_.state() == Planner::State::Searching;
@@ -68,7 +71,8 @@ class StripRoute {
   void take_plan(const PlanWorld& world, const Vec2& here_W);
   void fail(const PlanWorld& world, const Vec2& here_W, double now);
   void note_closure(const PlanWorld& world);
-  void go_back(const PlanWorld& world, const Vec2& here_W);
+  void wait_for_way(const PlanWorld& world, const Vec2& here_W, double now);
+  void search_for_watch(const PlanWorld& world, const Vec2& here_W);
   bool is_better(const LocalMap& map, bool was_taken) const;
   bool is_extended() const;
   StepCost step_cost() const;
@@ -81,14 +85,18 @@ class StripRoute {
   Planner::Path path_{};
   Recycled<Vec2> line_W_{};  // the path's local part
   std::optional<Vec2> goal_W_{};
-  /// A place on a former strip that had been seen free for long, and was found shut.
-  struct Closure {
+  /// A place to wait at for a way, and what to look at from there.
+  struct Watch {
+    Vec2 from_W{0, 0};
     Vec2 at_W{0, 0};
-    Vec2 before_W{0, 0};  // from where it was seen
+    std::optional<double> since{};  // [s] run clock: it is there
   };
-  std::optional<Closure> closure_{};  // the latest
-  std::optional<Vec2> watched_W_{};
-  bool going_back_ = false;  // the search is for the way to the closure
+  /// What the planner searches for: a way to the goal; all places within reach, of which the
+  /// nearest to the goal is wanted; a way to the place to wait at.
+  enum class Aim : std::uint8_t { Goal, Reach, Watch };
+  Aim aim_ = Aim::Goal;
+  std::optional<Watch> closure_{};  // a place that had been free for long and was then shut
+  std::optional<Watch> watch_{};
   bool doubts_ = false;
   int failures_ = 0;  // searches in a row without a way
   bool goal_taken_ = false;
