@@ -38,6 +38,7 @@ constexpr double kCoarseDoubt = 0.03;  // [m] by which a remembered clearance ma
 constexpr double kDoubtBelow = 0.06;   // [m] below and above the least clearance, where it is
 constexpr double kDoubtAbove = 0.02;   //     measured exactly
 constexpr int kExactCost = 3;          // of the budget
+constexpr double kUnseenRoom = 0.05;   // [m] more, for an unseen goal
 constexpr double kAside = 0.06;  // [m] from a lattice point to the roomiest place it stands for
 
 }  // namespace
@@ -154,6 +155,17 @@ float Planner::new_cost(const PlanWorld& world, Id id) {
   return static_cast<float>(price * step_.of(d) + doubt);
 }
 
+/// True if the goal may lie at the point. An unseen one needs more room: it may be the inside of a
+/// thing.
+bool Planner::has_room(const PlanWorld& world, Id id) const {
+  const double d = clearance(world, id);
+  const Vec2 p_W = position_W(id);
+  if (!world.memory.seen(BuildingMemory::cell_of(p_W))) return d >= step_.least + kUnseenRoom;
+  if (d >= step_.least) return true;
+  return exact_ && is_fine(id) &&
+         roomiest(world.map, goal_W_, kAside, LocalMap::kReach).distance >= step_.least;
+}
+
 /// The nearest point with room to stand, preferably a seen one. An unseen point may be the inside
 /// of the obstacle on the goal, and the robot would drive all around it to find out.
 Planner::Id Planner::free_point(const PlanWorld& world, Id wanted) const {
@@ -216,10 +228,7 @@ void Planner::start(const PlanWorld& world,
   goal_W_ = robot_W + share * (goal_W - robot_W);
   root_ = id_at(goal_W_);
   goal_taken_ = false;
-  const bool room =
-      clearance(world, root_) >= step_.least ||
-      (exact && is_fine(root_) &&
-       roomiest(world.map, goal_W_, kAside, LocalMap::kReach).distance >= step_.least);
+  const bool room = has_room(world, root_);
   goal_tight_ = !room && try_tight && near_robot(root_);
   if (!room && !goal_tight_) {
     const Id free = free_point(world, root_);

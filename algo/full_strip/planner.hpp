@@ -115,6 +115,7 @@ class Planner {
   void relax(const PlanWorld& world, Id from, Id to, float length);
   void expand_fine(const PlanWorld& world, Id id);
   void expand_coarse(const PlanWorld& world, Id id);
+  bool has_room(const PlanWorld& world, Id id) const;
   Id free_point(const PlanWorld& world, Id wanted) const;
   void place_bounds(const BuildingMemory& memory);
 

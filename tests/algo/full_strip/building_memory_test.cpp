@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "algo/full_strip/mixed_beam.hpp"
 #include "tests/algo/full_strip/walls.hpp"
 #include <gtest/gtest.h>
 
@@ -37,6 +38,48 @@ TEST(BuildingMemory, CountsTheBeamsThatCrossACell) {
   EXPECT_FALSE(memory.seen(cell(-1, 0)));
   EXPECT_FALSE(memory.seen(cell(8.5, 0)));
   EXPECT_GT(memory.crossings(cell(1, 0.1)), memory.crossings(cell(6, 2)));
+}
+
+/// Along a wall beside the way at 0.5 m, through a door in it, and on along the wall behind it.
+TEST(MixedBeam, AnEndBetweenAnEdgeAndTheWallBehindItIsMixed) {
+  algo::LaserScan scan = free_scan();
+  for (std::size_t i = 170; i < 176; ++i) scan.set_ok(i, 4.2);
+  for (std::size_t i = 178; i < 185; ++i) scan.set_ok(i, 5.3);
+  for (const double share : {0.3, 0.5, 0.7}) {
+    scan.set_ok(176, 4.2 + share * 1.1);
+    scan.set_ok(177, 4.2 + share * 1.1);  // doubled
+    EXPECT_TRUE(algo::is_mixed(scan, 176)) << share;
+    EXPECT_TRUE(algo::is_mixed(scan, 177)) << share;
+    EXPECT_FALSE(algo::is_mixed(scan, 173));
+    EXPECT_FALSE(algo::is_mixed(scan, 182));
+  }
+}
+
+TEST(MixedBeam, ALegBeforeAWallIsNotMixed) {
+  algo::LaserScan scan = free_scan();
+  for (std::size_t i = 0; i < scan.size(); ++i) scan.set_ok(i, 5);
+  scan.set_ok(180, 4.2);
+  for (std::size_t i = 0; i < scan.size(); ++i) EXPECT_FALSE(algo::is_mixed(scan, i)) << i;
+}
+
+TEST(MixedBeam, AWallAcrossTheBeamsIsNotMixed) {
+  algo::LaserScan scan = free_scan();
+  for (std::size_t i = 60; i < 300; ++i) scan.set_ok(i, 2 / std::cos(scan.angle(i)));
+  for (std::size_t i = 0; i < scan.size(); ++i) EXPECT_FALSE(algo::is_mixed(scan, i)) << i;
+}
+
+TEST(BuildingMemory, AMixedBeamRaisesDoubtsThatCrossingBeamsDispel) {
+  BuildingMemory memory;
+  algo::LaserScan scan = free_scan();
+  for (std::size_t i = 174; i < 180; ++i) scan.set_ok(i, 3);
+  for (std::size_t i = 182; i < 188; ++i) scan.set_ok(i, 4.2);
+  scan.set_ok(180, 3.6);
+  scan.set_ok(181, 3.6);
+  for (int k = 0; k < 4; ++k) memory.look(scan, {0, 0.1, 0});
+  EXPECT_TRUE(memory.doubtful(cell(3.6, 0.1)));
+  EXPECT_FALSE(memory.doubtful(cell(3.0, -0.2)));
+  for (int k = 0; k < 40; ++k) memory.look(free_scan(), {0, 0.1, 0});
+  EXPECT_FALSE(memory.doubtful(cell(3.6, 0.1)));
 }
 
 TEST(BuildingMemory, ATileFarAwayGivesItsPlaceToANearerOne) {

@@ -149,6 +149,17 @@ TEST(Planner, ReportsThatARememberedRoomHasNoDoor) {
   EXPECT_EQ(search.finish(), Planner::State::NoWay);
 }
 
+/// From the robot in a shut room: the search comes to the wall before the goal.
+TEST(Planner, TellsThePlaceWithinReachThatIsNearestToTheGoal) {
+  Search search;
+  for (const double y : {-2.0, 2.0}) wall(search.map, {-2, y}, {2, y});
+  for (const double x : {-2.0, 2.0}) wall(search.map, {x, -2}, {x, 2});
+  search.start({6, 0.5}, {0, 0});
+  ASSERT_EQ(search.finish(), Planner::State::NoWay);
+  EXPECT_NEAR(search.planner.closest_W().x(), 1.65, 0.15);
+  EXPECT_NEAR(search.planner.closest_W().y(), 0.5, 0.3);
+}
+
 TEST(Planner, PrefersSeenSpaceToUnseenSpace) {
   Search search;
   search.memory.get(0, 0);
