@@ -3,9 +3,10 @@
 
 #include <numbers>
 
-#include "algo/full_strip/mixed_beam.hpp"
 #include "tests/algo/full_strip/walls.hpp"
 #include <gtest/gtest.h>
+
+#include "algo/full_strip/mixed_beam.hpp"
 
 namespace {
 
