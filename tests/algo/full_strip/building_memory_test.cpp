@@ -15,7 +15,7 @@ using algo::LocalMap;
 using algo::Vec2;
 
 /// Half a turn ahead, nothing within range.
-algo::LaserScan free_scan() {
+algo::LaserScan free_sweep() {
   algo::LaserScan scan;
   scan.angle_min = -std::numbers::pi / 2;
   scan.angle_increment = std::numbers::pi / 360;
@@ -31,7 +31,7 @@ BuildingMemory::Cell cell(double x, double y) {
 
 TEST(BuildingMemory, CountsTheBeamsThatCrossACell) {
   BuildingMemory memory;
-  algo::LaserScan scan = free_scan();
+  algo::LaserScan scan = free_sweep();
   scan.set_ok(180, 4.05);  // straight ahead
   for (int k = 0; k < 10; ++k) memory.look(scan, {0, 0.1, 0});
   EXPECT_TRUE(memory.seen(cell(3.5, 0.1)));
@@ -43,7 +43,7 @@ TEST(BuildingMemory, CountsTheBeamsThatCrossACell) {
 
 /// Along a wall beside the way at 0.5 m, through a door in it, and on along the wall behind it.
 TEST(MixedBeam, AnEndBetweenAnEdgeAndTheWallBehindItIsMixed) {
-  algo::LaserScan scan = free_scan();
+  algo::LaserScan scan = free_sweep();
   for (std::size_t i = 170; i < 176; ++i) scan.set_ok(i, 4.2);
   for (std::size_t i = 178; i < 185; ++i) scan.set_ok(i, 5.3);
   for (const double share : {0.3, 0.5, 0.7}) {
@@ -57,21 +57,21 @@ TEST(MixedBeam, AnEndBetweenAnEdgeAndTheWallBehindItIsMixed) {
 }
 
 TEST(MixedBeam, ALegBeforeAWallIsNotMixed) {
-  algo::LaserScan scan = free_scan();
+  algo::LaserScan scan = free_sweep();
   for (std::size_t i = 0; i < scan.size(); ++i) scan.set_ok(i, 5);
   scan.set_ok(180, 4.2);
   for (std::size_t i = 0; i < scan.size(); ++i) EXPECT_FALSE(algo::is_mixed(scan, i)) << i;
 }
 
 TEST(MixedBeam, AWallAcrossTheBeamsIsNotMixed) {
-  algo::LaserScan scan = free_scan();
+  algo::LaserScan scan = free_sweep();
   for (std::size_t i = 60; i < 300; ++i) scan.set_ok(i, 2 / std::cos(scan.angle(i)));
   for (std::size_t i = 0; i < scan.size(); ++i) EXPECT_FALSE(algo::is_mixed(scan, i)) << i;
 }
 
 TEST(BuildingMemory, AMixedBeamRaisesDoubtsThatCrossingBeamsDispel) {
   BuildingMemory memory;
-  algo::LaserScan scan = free_scan();
+  algo::LaserScan scan = free_sweep();
   for (std::size_t i = 174; i < 180; ++i) scan.set_ok(i, 3);
   for (std::size_t i = 182; i < 188; ++i) scan.set_ok(i, 4.2);
   scan.set_ok(180, 3.6);
@@ -79,7 +79,7 @@ TEST(BuildingMemory, AMixedBeamRaisesDoubtsThatCrossingBeamsDispel) {
   for (int k = 0; k < 4; ++k) memory.look(scan, {0, 0.1, 0});
   EXPECT_TRUE(memory.doubtful(cell(3.6, 0.1)));
   EXPECT_FALSE(memory.doubtful(cell(3.0, -0.2)));
-  for (int k = 0; k < 40; ++k) memory.look(free_scan(), {0, 0.1, 0});
+  for (int k = 0; k < 40; ++k) memory.look(free_sweep(), {0, 0.1, 0});
   EXPECT_FALSE(memory.doubtful(cell(3.6, 0.1)));
 }
 
