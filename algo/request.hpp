@@ -101,10 +101,13 @@ struct Quaternion {
   double w = 1, x = 0, y = 0, z = 0;
   bool operator==(const Quaternion&) const = default;
 };
+inline constexpr std::size_t kMostPathPoints = 100;
+inline constexpr double kLongestPath = 30;  // [m] of the hand: a plan takes time for each metre
 /// Brings the hand to a pose, with arm and base.
 struct SetHandGoal {
   Vec3 position_W{0, 0, 0};
   Quaternion attitude_W{};
+  std::vector<Vec3> path_W{};  // to which the hand goes on in straight lines, turned the same
   std::optional<double> arm_angle{};  // [rad] at the goal, see arm_angle(); absent: any
   bool base_stays = false;            // the arm alone moves
   std::optional<SetGoal> then{};      // where the base goes after that, with the arm folded

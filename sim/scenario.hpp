@@ -82,6 +82,16 @@ struct Scenario {
   std::string log{};      // path of a CARMEN log to replay instead of a world
   std::string map{};      // path of a map of map_server that the robot knows; empty: none
   bool lost = false;      // where it begins on that map is not known to it
+
+  /// [m] Where the run is to end on the map: the base's goal, or the place below the hand's.
+  std::optional<algo::Vec2> end_W() const {
+    if (goal) return goal->position_W;
+    if (!hand_goal) return std::nullopt;
+    if (hand_goal->then) return hand_goal->then->position_W;
+    const algo::Vec3& hand_W =
+        hand_goal->path_W.empty() ? hand_goal->position_W : hand_goal->path_W.back();
+    return hand_W.head<2>();
+  }
 };
 
 }  // namespace sim

@@ -17,6 +17,8 @@ constexpr double kSettle = 0.5;         // [s] in which an error of heading or p
 constexpr double kBrakes = 0.7;         // of its deceleration that a base plans to use
 constexpr double kLook = 0.1;           // [s] between two looks at the next motion
 constexpr double kSameRoom = 1e-6;      // [m]
+constexpr double kForesees = 2;         // [s] ahead a base that stands sees something come
+constexpr int kFarLooks = 10;           // in that time
 constexpr double kSpeedMemory = 1;      // [s] of the speed that predicts when the body gets where
 constexpr double kLeastSpeed = 0.1;     // [m/s] of the same: a body that waits will go on
 
@@ -111,23 +113,46 @@ BodyCommand BodyFollower::update(const BodyJoints& now, std::span<const Solid> s
 
 BodyCommand BodyFollower::kept_clear(const BodyJoints& now,
                                      const BodyCommand& wanted,
-                                     std::span<const Solid> solids) const {
+                                     std::span<const Solid> solids,
+                                     bool together) const {
   BodyCommand arm_alone = wanted;
   arm_alone.base = {};
   BodyCommand base_alone = wanted;
   base_alone.rates.setZero();
   const BodyCommand rest{.state = FollowState::Waits};
+  if (together) arm_alone = base_alone = rest;
   const std::array candidates{wanted, arm_alone, base_alone, rest};
+  const int looks = static_cast<int>(std::round(rules_.horizon / kLook));
+  const Look near{.horizon = rules_.horizon, .looks = looks};
   const BodyCommand* best = nullptr;
   double best_room = 0;
   for (const BodyCommand& candidate : candidates) {
-    const double room = least_room(now, candidate, solids);
+    const double room = least_room(now, candidate, solids, near);
     if (room >= 0) return candidate;
     if (best != nullptr && room <= best_room + kSameRoom) continue;
     best = &candidate;
     best_room = room;
   }
-  return *best;
+  if (!rules_.gives_way) return *best;
+  const BodyCommand aside = out_of_the_way(now, solids);
+  return aside.base.v != 0 ? aside : *best;
+}
+
+BodyCommand BodyFollower::out_of_the_way(const BodyJoints& now,
+                                         std::span<const Solid> solids) const {
+  const Look moving{.of = Look::Of::Moving, .horizon = kForesees, .looks = kFarLooks};
+  const Look present{.of = Look::Of::Present, .horizon = kForesees, .looks = kFarLooks};
+  BodyCommand best{.state = FollowState::Waits};
+  if (least_room(now, best, solids, moving) >= 0) return best;
+  double most = least_room(now, best, solids, present);
+  for (const double v : {limits_.max_v, -limits_.max_v}) {
+    const BodyCommand aside{.base = {v, 0}, .state = FollowState::Waits};
+    const double room = least_room(now, aside, solids, present);
+    if (room <= most + kSameRoom) continue;
+    best = aside;
+    most = room;
+  }
+  return best;
 }
 
 BodyCommand BodyFollower::towards_strip(const BodyJoints& now) const {
@@ -164,16 +189,23 @@ BodyCommand BodyFollower::towards_strip(const BodyJoints& now) const {
 
 double BodyFollower::least_room(const BodyJoints& now,
                                 const BodyCommand& command,
-                                std::span<const Solid> solids) const {
+                                std::span<const Solid> solids,
+                                const Look& look) const {
+  const auto counts = [&](const Solid& solid) {
+    if (look.of == Look::Of::Moving) return !solid.velocity_W.isZero();
+    return look.of == Look::Of::All || !solid.foreseen;
+  };
   double least = std::numeric_limits<double>::infinity();
-  const int looks = static_cast<int>(std::round(rules_.horizon / kLook));
-  for (int look = 1; look <= looks; ++look) {
-    const double time = kLook * look;
+  for (int n = 1; n <= look.looks; ++n) {
+    const double time = look.horizon * n / look.looks;
     const BodyFrames frames = body_frames(body_, moved(now, command, time));
-    least = std::min(least, self_clearance(body_, frames) - rules_.own_margin);
+    if (look.of != Look::Of::Moving) {
+      least = std::min(least, self_clearance(body_, frames) - rules_.own_margin);
+    }
     for (std::size_t k = 0; k < kBodyLinks; ++k) {
       const LinkAxis link = link_axis(body_, frames, static_cast<BodyLink>(k));
       for (const Solid& solid : solids) {
+        if (!counts(solid)) continue;
         least = std::min(least, nearest(link, solid.after(time)).distance - rules_.margin);
       }
     }

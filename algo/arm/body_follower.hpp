@@ -25,6 +25,7 @@ struct FollowRules {
   double horizon = 0.4;       // [s] the next motion must keep the margins for this long
   double goal_reach = 0.005;  // [rad] joints and heading are at their goal when they are so near,
   double base_reach = 0.05;   // [m] and the base when it is so near across its way
+  bool gives_way = true;      // the base gets out of the way of what comes
 };
 
 /// Why the body moves as it does.
@@ -52,21 +53,34 @@ class BodyFollower {
   /// One tick of `dt` [s] for a body at `now`. Allocates nothing.
   BodyCommand update(const BodyJoints& now, std::span<const Solid> solids, double dt);
 
+  /// `wanted` if it keeps the margin; else its arm or its base alone, unless both must go
+  /// `together`, or rest: the first that keeps it, or the one with the most room. Where something
+  /// comes, a base may also get out of its way. Allocates nothing.
+  BodyCommand kept_clear(const BodyJoints& now,
+                         const BodyCommand& wanted,
+                         std::span<const Solid> solids,
+                         bool together = false) const;
+
   /// In one tick.
   void set_sweeps(int sweeps) { rules_.sweeps = sweeps; }
   const BodyStrip& strip() const { return strip_; }
 
  private:
   BodyCommand towards_strip(const BodyJoints& now) const;
-  /// `wanted` if it keeps the margin; else its arm or its base alone, or rest: the first that keeps
-  /// it, or the one with the most room.
-  BodyCommand kept_clear(const BodyJoints& now,
-                         const BodyCommand& wanted,
-                         std::span<const Solid> solids) const;
-  /// [m] Beyond the margins, while `command` goes on for the horizon.
+  /// Forwards or backwards out of the way of what comes; rest where nothing comes, or where neither
+  /// helps.
+  BodyCommand out_of_the_way(const BodyJoints& now, std::span<const Solid> solids) const;
+  /// Which solids count, for how long [s], and at how many moments.
+  struct Look {
+    enum class Of : std::uint8_t { All, Present, Moving } of = Of::All;
+    double horizon = 0;
+    int looks = 0;
+  };
+  /// [m] Beyond the margins, while `command` goes on.
   double least_room(const BodyJoints& now,
                     const BodyCommand& command,
-                    std::span<const Solid> solids) const;
+                    std::span<const Solid> solids,
+                    const Look& look) const;
 
   MobileArm body_;
   BodyLimits limits_;

@@ -110,6 +110,16 @@ bool KnownThings::is_declared(const Vec2& p_W) const {
   });
 }
 
+bool KnownThings::set_moving(const Vec2& centre_W, double reach, const Vec2& velocity_W) {
+  bool seen = false;
+  for (Solid& solid : std::span(all_).subspan(declared_.size())) {
+    if ((solid.centre_W - centre_W).norm() >= reach) continue;
+    solid.velocity_W = velocity_W;
+    seen = true;
+  }
+  return seen;
+}
+
 void KnownThings::find_near(const Vec2& here_W, double reach, std::vector<Solid>& near) const {
   near.clear();
   for (const Solid& solid : all_) {

@@ -33,6 +33,10 @@ class KnownThings {
   /// `points_W` has a point for each beam (only those of Ok beams count).
   void see(const LaserScan& scan, const Pose2& sensor_W, std::span<const Vec2> points_W);
 
+  /// What is seen within `reach` [m] of `centre_W` moves so [m/s], until the next scan. False if
+  /// nothing is seen there.
+  bool set_moving(const Vec2& centre_W, double reach, const Vec2& velocity_W);
+
   std::span<const Solid> all() const { return all_; }
   /// Overwrites `near` by those within `reach` [m] of `here_W`.
   void find_near(const Vec2& here_W, double reach, std::vector<Solid>& near) const;

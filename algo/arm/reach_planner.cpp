@@ -7,6 +7,7 @@
 
 #include "algo/arm/arm_inverse.hpp"
 #include "algo/arm/elbow_circle.hpp"
+#include "algo/arm/hand_path_planner.hpp"
 #include "algo/grid_search.hpp"
 
 namespace algo {
@@ -241,6 +242,12 @@ std::optional<std::string> out_of_reach(const MobileArm& body,
   return unreachable(body.arm, in_shoulder);
 }
 
+/// True if the hand can follow its path from `there`.
+bool goes_on(const MobileArm& body, const BodyJoints& there, const ReachQuestion& question) {
+  return !plan_hand_path(body, there, question.path_W, false, question.solids, question.rules)
+              .path.empty();
+}
+
 }  // namespace
 
 std::string_view name(ReachLeg::Kind kind) {
@@ -251,6 +258,8 @@ std::string_view name(ReachLeg::Kind kind) {
       return "turns";
     case ReachLeg::Kind::Drive:
       return "drives";
+    case ReachLeg::Kind::Follow:
+      return "follows its path with the hand";
   }
   return "";
 }
@@ -260,7 +269,8 @@ ReachPlan plan_reach(const MobileArm& body,
                      const Pose3& hand_W,
                      std::span<const Solid> solids,
                      std::uint64_t seed,
-                     const ReachRules& rules) {
+                     const ReachRules& rules,
+                     std::span<const Vec3> path_W) {
   const ArmPlanRules nearer = leaving(body, start, solids, rules.arm);
   if (!is_clear(body, start, solids, nearer)) {
     return no_plan("The robot stands too near to something to move its arm.");
@@ -276,6 +286,7 @@ ReachPlan plan_reach(const MobileArm& body,
   const ReachRules driving = base_leaving(body, from, solids, rules);
   BaseGrid grid(body, from, hand_W.translation().head<2>(), solids, driving);
   int tried = 0;
+  std::string why;
   std::ranges::rotate(places,
                       places.begin() + static_cast<std::ptrdiff_t>(rules.skip % places.size()));
   for (const ReachPlace& place : places) {
@@ -285,9 +296,16 @@ ReachPlan plan_reach(const MobileArm& body,
     ++tried;
     const auto reach = plan_arm(body, place.base_W, body.folded, place.q, solids, seed, rules.arm);
     if (!reach) continue;
+    const BodyJoints there = body_joints(place.base_W, place.q);
+    const HandPathPlan onwards = plan_hand_path(body, there, path_W, false, solids, rules);
+    if (onwards.path.empty()) {
+      why = onwards.why;
+      continue;
+    }
     return {.legs = legs_of(
                 start, *fold, straightened(body, *way, solids, driving), place, *reach, rules)};
   }
+  if (!why.empty()) return no_plan(std::move(why));
   return no_plan(tried > 0
                      ? "The arm finds no way between the obstacles to its goal."
                      : "The base finds no way to a place from which the hand reaches its goal.");
@@ -352,17 +370,30 @@ ReachPlan answer(const MobileArm& body, const ReachQuestion& question) {
     return plan_return(
         body, question.now, question.base_goal, question.solids, question.seed, question.rules);
   }
+  if (question.kind == ReachQuestion::Kind::Follow) {
+    HandPathPlan found = plan_hand_path(
+        body, question.now, question.path_W, question.base_stays, question.solids, question.rules);
+    if (found.path.empty()) return no_plan(std::move(found.why));
+    return {.legs = {{ReachLeg::Kind::Follow, std::move(found.path)}}};
+  }
   const bool stays = question.kind == ReachQuestion::Kind::Last;
   const auto place = stays ? std::optional(base_of(question.now)) : std::nullopt;
   if (auto why = out_of_reach(body, question.hand_W, place)) return no_plan(std::move(*why));
   if (stays || question.rules.here_first) {
     auto last = plan_last_reach(
         body, question.now, question.hand_W, question.solids, question.seed, question.rules);
-    if (last) return {.legs = {std::move(*last)}};
+    if (last && (stays || goes_on(body, last->path.back(), question))) {
+      return {.legs = {std::move(*last)}};
+    }
   }
   if (stays) return no_plan("From where the base stands, the hand does not get to its goal.");
-  return plan_reach(
-      body, question.now, question.hand_W, question.solids, question.seed, question.rules);
+  return plan_reach(body,
+                    question.now,
+                    question.hand_W,
+                    question.solids,
+                    question.seed,
+                    question.rules,
+                    question.path_W);
 }
 
 }  // namespace algo

@@ -15,7 +15,7 @@ namespace algo {
 /// A part of a way, which one strip follows. Its first configuration is the last one of the part
 /// before.
 struct ReachLeg {
-  enum class Kind : std::uint8_t { Arm, Turn, Drive };
+  enum class Kind : std::uint8_t { Arm, Turn, Drive, Follow };
   Kind kind = Kind::Arm;
   std::vector<BodyJoints> path{};
 };
@@ -32,13 +32,14 @@ struct ReachPlan {
 /// From `start` to the hand at `hand_W`. First the places of the base are found from which the hand
 /// gets there clear of `solids` (reach_places()); from the best one on, a way of the base with the
 /// arm folded (A*), and one of the arm (plan_arm()). The same arguments give the same
-/// plan.
+/// plan. With `path_W`, only places count from which the hand can go on along it.
 ReachPlan plan_reach(const MobileArm& body,
                      const BodyJoints& start,
                      const Pose3& hand_W,
                      std::span<const Solid> solids,
                      std::uint64_t seed,
-                     const ReachRules& rules = {});
+                     const ReachRules& rules = {},
+                     std::span<const Vec3> path_W = {});
 
 /// The last leg anew, for a base that has come to stand at `now`, a little off its place. None if
 /// the hand does not get there from where the base stands.
@@ -67,10 +68,13 @@ struct ReachQuestion {
     Last,    // of its last leg, from where the base stands
     Return,  // plan_return()
     Carry,   // plan_carry()
+    Follow,  // plan_hand_path()
   };
   Kind kind = Kind::Whole;
   BodyJoints now = BodyJoints::Zero();
   Pose3 hand_W = Pose3::Identity();
+  std::vector<Vec3> path_W{};  // of the hand, on from there
+  bool base_stays = false;     // on that path
   SetGoal base_goal{};
   std::vector<Solid> solids{};
   std::uint64_t seed = 0;

@@ -1,6 +1,8 @@
 #include "algo/arm/reach_task.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace algo {
@@ -15,6 +17,7 @@ constexpr double kStandsStill = 1e-3;  // [m/s, rad/s]
 
 /// True if `command` carries on a leg. An arm that gives way while the base stands does not.
 bool carries_on(const BodyCommand& command, ReachLeg::Kind kind) {
+  if (kind == ReachLeg::Kind::Follow) return command.state != FollowState::Waits;
   if (kind == ReachLeg::Kind::Arm) return command.rates.cwiseAbs().maxCoeff() > kStandsStill;
   return std::abs(command.base.v) > kStandsStill || std::abs(command.base.omega) > kStandsStill;
 }
@@ -24,7 +27,8 @@ bool carries_on(const BodyCommand& command, ReachLeg::Kind kind) {
 ReachTask::ReachTask(const MobileArm& body, const BodyLimits& limits, const ReachRules& rules)
     : body_(body),
       rules_(rules),
-      follower_(body, limits, {}, {.margin = rules.arm.margin - kPlay}) {}
+      follower_(body, limits, {}, {.margin = rules.arm.margin - kPlay}),
+      path_(body, limits) {}
 
 void ReachTask::begin(const BodyJoints& now,
                       const ReachGoal& goal,
@@ -34,7 +38,9 @@ void ReachTask::begin(const BodyJoints& now,
   seed_ = seed;
   plans_ = 0;
   still_ = 0;
-  returns_ = false;
+  stage_ = Stage::There;
+  path_.reset();
+  followed_ = 0;
   legs_.clear();
   ask(way(), now, solids);
 }
@@ -42,7 +48,8 @@ void ReachTask::begin(const BodyJoints& now,
 ReachQuestion::Kind ReachTask::way() const {
   using Kind = ReachQuestion::Kind;
   if (goal_.carries) return Kind::Carry;
-  if (returns_) return Kind::Return;
+  if (stage_ == Stage::Back) return Kind::Return;
+  if (stage_ == Stage::Path) return Kind::Follow;
   return goal_.base_stays ? Kind::Last : Kind::Whole;
 }
 
@@ -51,13 +58,17 @@ void ReachTask::ask(ReachQuestion::Kind kind,
                     std::span<const Solid> solids) {
   const auto failed = static_cast<std::uint64_t>(plans_);
   const bool whole = kind == ReachQuestion::Kind::Whole;
-  question_ = ReachQuestion{.kind = kind,
-                            .now = now,
-                            .hand_W = goal_.hand_W,
-                            .base_goal = goal_.then.value_or(SetGoal{}),
-                            .solids = {solids.begin(), solids.end()},
-                            .seed = whole ? seed_ + failed : seed_,
-                            .rules = rules_};
+  question_ =
+      ReachQuestion{.kind = kind,
+                    .now = now,
+                    .hand_W = goal_.hand_W,
+                    .path_W = kind == ReachQuestion::Kind::Follow ? path_left() : goal_.path_W,
+                    .base_stays = goal_.base_stays,
+                    .base_goal = goal_.then.value_or(SetGoal{}),
+                    .seed = whole ? seed_ + failed : seed_,
+                    .rules = rules_};
+  const auto stands = [](const Solid& solid) { return solid.velocity_W.isZero(); };
+  std::ranges::copy_if(solids, std::back_inserter(question_->solids), stands);
   question_->rules.arm_angle = goal_.arm_angle;
   if (whole) question_->rules.skip += kTriedPlaces * failed;
   state_ = State::Plans;
@@ -102,24 +113,23 @@ void ReachTask::follow(const BodyJoints& now) {
   state_ = State::Goes;
   std::vector<BodyJoints>& path = legs_[leg_].path;
   path.front() = now;
-  follower_.begin(path);
+  if (legs_[leg_].kind != ReachLeg::Kind::Follow) return follower_.begin(path);
+  followed_ += path_.done();
+  path_.begin(path);
 }
 
-BodyCommand ReachTask::update(const BodyJoints& now, std::span<const Solid> solids, double dt) {
+BodyCommand ReachTask::update(const BodyJoints& now,
+                              std::span<const Solid> near,
+                              std::span<const Solid> all,
+                              double dt) {
   BodyCommand rest{.state = FollowState::Waits};
   if (question_ || state_ == State::GivenUp || legs_.empty()) return rest;
-  BodyCommand command = follower_.update(now, solids, dt);
+  BodyCommand command = step(now, near, dt);
   if (command.state == FollowState::Arrived && leg_ + 1 < legs_.size()) {
-    next_leg(now, solids);
+    next_leg(now, all);
     return {};
   }
-  if (command.state == FollowState::Arrived && goal_.then && !returns_ && !goal_.carries) {
-    returns_ = true;
-    plans_ = 0;
-    legs_.clear();
-    ask(way(), now, solids);
-    return rest;
-  }
+  if (command.state == FollowState::Arrived && go_on(now, all)) return rest;
   if (command.state == FollowState::Arrived) {
     state_ = State::Arrived;
     still_ = 0;
@@ -129,9 +139,43 @@ BodyCommand ReachTask::update(const BodyJoints& now, std::span<const Solid> soli
   state_ = still_ > 0 ? State::Waits : State::Goes;
   if (still_ > kPatience) {
     still_ = 0;
-    ask_anew(now, solids);
+    ask_anew(now, all);
   }
   return command;
+}
+
+bool ReachTask::go_on(const BodyJoints& now, std::span<const Solid> solids) {
+  if (goal_.carries || stage_ == Stage::Back) return false;
+  const bool follows = stage_ == Stage::There && !goal_.path_W.empty();
+  if (!follows && !goal_.then) return false;
+  stage_ = follows ? Stage::Path : Stage::Back;
+  plans_ = 0;
+  still_ = 0;
+  legs_.clear();
+  ask(way(), now, solids);
+  return true;
+}
+
+/// Along the present leg.
+BodyCommand ReachTask::step(const BodyJoints& now, std::span<const Solid> near, double dt) {
+  if (legs_[leg_].kind != ReachLeg::Kind::Follow) return follower_.update(now, near, dt);
+  const BodyCommand along = path_.update(now, near, dt);
+  if (along.state == FollowState::Arrived) return along;
+  BodyCommand command = follower_.kept_clear(now, along, near, true);
+  if (along.state == FollowState::Waits) command.state = FollowState::Waits;
+  return command;
+}
+
+std::vector<Vec3> ReachTask::path_left() const {
+  double behind = followed_ + path_.done();
+  std::vector<Vec3> left;
+  Vec3 last = goal_.hand_W.translation();
+  for (const Vec3& point : goal_.path_W) {
+    behind -= (point - last).norm();
+    if (behind < 0) left.push_back(point);
+    last = point;
+  }
+  return left;
 }
 
 std::string ReachTask::words() const {
@@ -144,8 +188,9 @@ std::string ReachTask::words() const {
       return "The robot waits: something is too near to go on.";
     case State::Arrived:
       if (goal_.carries) return "The robot is at its goal.";
-      return returns_ ? "The robot is back from where its hand has been."
-                      : "The hand is at its goal.";
+      if (stage_ == Stage::Back) return "The robot is back from where its hand has been.";
+      return stage_ == Stage::Path ? "The hand is at the end of its path."
+                                   : "The hand is at its goal.";
     case State::GivenUp:
       return why_;
   }

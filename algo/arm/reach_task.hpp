@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "algo/arm/body_follower.hpp"
+#include "algo/arm/hand_path.hpp"
 #include "algo/arm/reach_planner.hpp"
 
 namespace algo {
@@ -16,15 +17,17 @@ namespace algo {
 /// Where hand or base are to get, and how.
 struct ReachGoal {
   Pose3 hand_W = Pose3::Identity();
+  std::vector<Vec3> path_W{};         // of the hand, on from there
   std::optional<double> arm_angle{};  // [rad] at the goal; absent: the best one
   bool base_stays = false;            // the arm alone moves
-  std::optional<SetGoal> then{};      // of the base, after that
+  std::optional<SetGoal> then{};      // of the base, after all that
   bool carries = false;               // there is no goal of the hand: the arm goes along as it is
 };
 
-/// The sequencing layer of a reach: its legs one after another. It asks for a plan and stands until
-/// it has come: at the start, when the base has come to stand before the last leg, when the hand
-/// does not get to its goal from there, and when the body has waited too long.
+/// The sequencing layer of a reach: its legs one after another, then the hand's path, then back. It
+/// asks for a plan and stands until it has come: at the start, when the base has come to stand
+/// before the last leg, when the hand does not get to its goal from there, and when the body has
+/// waited too long.
 class ReachTask {
  public:
   enum class State : std::uint8_t { Plans, Goes, Waits, Arrived, GivenUp };
@@ -42,11 +45,16 @@ class ReachTask {
   /// The answer to question(), for a body at `now`. May leave another question.
   void take(ReachPlan found, const BodyJoints& now, std::span<const Solid> solids);
 
-  /// One tick of `dt` [s] for a body at `now`. Allocates only where it asks and where a leg begins.
-  BodyCommand update(const BodyJoints& now, std::span<const Solid> solids, double dt);
+  /// One tick of `dt` [s] for a body at `now`: it keeps clear of what is `near`, and plans anew
+  /// with `all`. Allocates only where it asks and where a leg begins.
+  BodyCommand update(const BodyJoints& now,
+                     std::span<const Solid> near,
+                     std::span<const Solid> all,
+                     double dt);
 
   /// Of the strip, in one tick.
   void set_sweeps(int sweeps) { follower_.set_sweeps(sweeps); }
+  void set_hand_speed(double speed) { path_.set_speed(speed); }  // [m/s] along its path
 
   State state() const { return state_; }
   /// What the body does, or why it does not, as a sentence.
@@ -60,22 +68,31 @@ class ReachTask {
   int plans() const { return plans_; }
 
  private:
+  enum class Stage : std::uint8_t { There, Path, Back };
   /// What is asked for now: the way to the goal of the hand or of the base.
   ReachQuestion::Kind way() const;
+  /// Leaves out what moves: it will be elsewhere.
   void ask(ReachQuestion::Kind kind, const BodyJoints& now, std::span<const Solid> solids);
   /// Asks for the whole way again, with other places first, or gives up.
   void ask_anew(const BodyJoints& now, std::span<const Solid> solids);
   void take_whole(ReachPlan found, const BodyJoints& now);
   void follow(const BodyJoints& now);
   void next_leg(const BodyJoints& now, std::span<const Solid> solids);
+  /// The hand is at its goal, or at the end of its path: begins the next stage, if there is one.
+  bool go_on(const BodyJoints& now, std::span<const Solid> solids);
+  BodyCommand step(const BodyJoints& now, std::span<const Solid> near, double dt);
+  /// The points of the path that are ahead of the hand.
+  std::vector<Vec3> path_left() const;
   void give_up();
 
   MobileArm body_;
   ReachRules rules_;
   BodyFollower follower_;
+  HandPath path_;
+  double followed_ = 0;  // [m] of the hand's path, on the legs before this one
   ReachGoal goal_{};
   std::uint64_t seed_ = 0;
-  bool returns_ = false;  // the hand has been at its goal
+  Stage stage_ = Stage::There;
   std::optional<ReachQuestion> question_{};
   std::vector<ReachLeg> legs_{};
   std::size_t leg_ = 0;

@@ -1,11 +1,15 @@
 #include "algo/arm/solid.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace algo {
 namespace {
 
 constexpr int kHalvings = 20;  // a link of 0.3 m to less than a micrometre
+
+// [s] Moments at which a moving solid's place is kept free; before now, since it may turn back.
+constexpr std::array kForeseen{-1.0, -0.5, 0.5, 1.0, 1.5, 2.0};
 
 constexpr double kShadow = 100;  // [m] half of a shadow: far beyond any arm
 
@@ -89,6 +93,19 @@ double gap_along(const Vec3& from_W, const Vec3& to_W, const Solid& solid, const
   const double from = ahead.dot(from_W.head<2>()) - centre;
   const double to = ahead.dot(to_W.head<2>()) - centre;
   return std::max(std::min(from, to), -std::max(from, to)) - half_extent(solid, ahead);
+}
+
+void keep_ahead_free(std::vector<Solid>& solids) {
+  const std::size_t count = solids.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (solids[i].velocity_W.isZero()) continue;
+    for (const double seconds : kForeseen) {
+      Solid then = solids[i].after(seconds);
+      then.velocity_W.setZero();
+      then.foreseen = true;
+      solids.push_back(then);
+    }
+  }
 }
 
 void append_solids(const Obstacle& obstacle, std::vector<Solid>& solids) {

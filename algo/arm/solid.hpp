@@ -21,6 +21,7 @@ struct Solid {
   double bottom = 0;            // [m] above the floor
   double top = std::numeric_limits<double>::infinity();  // [m]
   Vec2 velocity_W = Vec2::Zero();                        // [m/s]
+  bool foreseen = false;  // nothing is there yet: see keep_ahead_free()
 
   /// Where it will be `seconds` from now.
   Solid after(double seconds) const {
@@ -54,6 +55,11 @@ Solid solid_shadow(const Solid& solid, const Vec2& ahead, const Vec2& shoulder_W
 
 /// [m] Along `ahead`, between a link and `solid`; negative where they are side by side.
 double gap_along(const Vec3& from_W, const Vec3& to_W, const Solid& solid, const Vec2& ahead);
+
+/// Appends where each solid that moves will be within the next 2 s, and where it would be if it
+/// turned back, as solids that stand. A base that has stopped in somebody's way gets out of it
+/// late.
+void keep_ahead_free(std::vector<Solid>& solids);
 
 /// Appends what `obstacle` occupies from its bottom to its height; a polygon as its edges. Ramps
 /// and trenches are ground and add nothing.

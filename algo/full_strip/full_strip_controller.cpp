@@ -72,6 +72,7 @@ RouteSettings FullStripController::route_settings(const Parameters& parameters) 
   settings.strip.repulsion = parameters[kRepulsionGain];
   settings.strip.rest_distance = std::min(parameters[kSafetyDistance], LocalMap::kReach);
   settings.half_width = stage_.hull().half_width();
+  settings.round = stage_.hull().is_round();
   settings.max_v = limits_.max_v;
   settings.break_room = parameters[kBreakRoom];
   settings.plan_period = parameters[kPlanPeriod];
@@ -97,7 +98,8 @@ bool FullStripController::ends_here(const ControlInput& in, const Parameters& pa
 /// Drops the strip and backs off after a long time without progress.
 void FullStripController::watch_progress(const ControlInput& in) {
   const bool turning = state_ == kTurning && std::abs(in.odometry.twist.omega) > kTurnsOnSpot;
-  progress_.see(in.odometry.pose.position(), in.stamp, turning || narrow_place_.driving());
+  const bool busy = turning || narrow_place_.driving() || route_.waits_for_plan();
+  progress_.see(in.odometry.pose.position(), in.stamp, busy);
   const double patience = ProgressWatch::time_for(kStuckTime, limits_.max_v);
   if (progress_.without_progress(in.stamp) < patience) return;
   route_.give_up(in.stamp);
@@ -137,7 +139,7 @@ std::optional<StripCommand> FullStripController::follow(const StageInput& stage,
 
 StripCommand FullStripController::recover(const StageInput& stage, const ControlInput& in) {
   const auto command = recovery_.next(stage, stage_, in.odometry.twist.v, in.stamp, weighed_);
-  if (!command) return {{}, route_.no_way() ? kNoWay : kBlocked};
+  if (!command) return {{}, route_.waits_for_plan() ? kPlanning : kBlocked};
   if (recovery_.begins_escape()) narrow_place_.reset();
   return *command;
 }
@@ -151,6 +153,14 @@ StageInput FullStripController::stage_input(const ControlInput& in) const {
   stage.dt = in.dt;
   if (route_.broken_at() >= 0) stage.stop_at = std::max(0.0, route_.broken_at() - kStopShort);
   return stage;
+}
+
+/// Turns towards the place where the way was shut, if it was.
+Twist2 FullStripController::watch(const ControlInput& in, const Parameters& parameters) const {
+  if (!route_.watched_W()) return {};
+  const Vec2 way_W = *route_.watched_W() - in.odometry.pose.position();
+  return turn_to(
+      in.odometry.pose, SetGoal{*route_.watched_W(), std::atan2(way_W.y(), way_W.x())}, parameters);
 }
 
 StripCommand FullStripController::drive(const ControlInput& in, const Parameters& parameters) {
@@ -174,6 +184,11 @@ StripCommand FullStripController::drive(const ControlInput& in, const Parameters
     progress_.excuse_progress(in.stamp);
     return {proven({}), kGoalTaken};
   }
+  if (route_.no_way() && route_.strip().empty()) {
+    progress_.restart(in.odometry.pose.position(), in.stamp);
+    recovery_.reset();
+    return {proven(watch(in, parameters)), kNoWay};
+  }
   watch_progress(in);
   if (recovery_.active(in.stamp) || route_.strip().empty()) return recover(stage, in);
   if (const auto command = carry_on(stage, in)) return *command;
@@ -196,7 +211,11 @@ void FullStripController::update(const ControlInput& in,
     return;
   }
   take_goal(in);
-  route_.update(route_settings(parameters), senses_.map(), in.odometry.pose.position(), in.stamp);
+  route_.update(route_settings(parameters),
+                {senses_.map(), senses_.memory()},
+                in.odometry.pose.position(),
+                in.stamp);
+  if (route_.doubts()) senses_.forget_doubtful();
   const StripCommand command = drive(in, parameters);
   state_ = command.state;
   out.twist = command.twist;

@@ -39,6 +39,7 @@ class FullStripController final : public Controller {
   RouteSettings route_settings(const Parameters& parameters) const;
   StripCommand drive(const ControlInput& in, const Parameters& parameters);
   StageInput stage_input(const ControlInput& in) const;
+  Twist2 watch(const ControlInput& in, const Parameters& parameters) const;
   bool ends_here(const ControlInput& in, const Parameters& parameters) const;
   void watch_progress(const ControlInput& in);
   std::optional<StripCommand> carry_on(const StageInput& stage, const ControlInput& in);

@@ -31,7 +31,8 @@ constexpr LayerInfo kVelocities{.name = "moving.velocity",
 
 void FullStripController::report(const ControlInput& in, ControlOutput& out) const {
   out.state = state_;
-  out.waits = state_ == kNoWay || state_ == kGoalTaken || state_ == kBlocked || state_ == kCornered;
+  out.waits = state_ == kNoWay || state_ == kGoalTaken || state_ == kBlocked ||
+              state_ == kCornered || state_ == kPlanning;
   Layer& map = add_layer(out.layers, kMap);
   if (in.grids) senses_.map().draw(in.odometry.pose.position(), kDrawn, map);
   Layer& plan = add_layer(out.layers, layers::kPlan);
@@ -115,7 +116,7 @@ void FullStripController::explain(const Telemetry& t, Explanation& words) const 
     case kNoWay:
       words.what = "No way known";
       say(words.why,
-          "The map shows no way to the goal, %.2f m away. It is asked again four times a second.",
+          "The map shows no way to the goal, %.2f m away. It is asked again every second.",
           to_goal(t));
       break;
     case kGoalTaken:
@@ -124,6 +125,10 @@ void FullStripController::explain(const Telemetry& t, Explanation& words) const 
           "Something stands on it, %.2f m away, or too close to it. It is looked at again four "
           "times a second.",
           to_goal(t));
+      break;
+    case kPlanning:
+      words.what = "Looking for a way";
+      say(words.why, "It searches its map for a way to the goal, %.2f m away.", to_goal(t));
       break;
     case kBlocked:
       words.what = "Standing still";

@@ -7,11 +7,14 @@
 #include <numbers>
 #include <span>
 
+#include "algo/full_strip/mixed_beam.hpp"
+
 namespace algo {
 namespace {
 
 constexpr std::uint8_t kHit = 2;         // added by a hit,
 constexpr std::uint8_t kMost = 8;        // up to this;
+constexpr std::uint8_t kSure = 6;        // hits from which a cell is not doubted
 constexpr int kLook = 2;                 // removed when a beam passes
 constexpr double kBeyond = 0.15;         // [m] a beam must go on this far behind a cell to clear it
 constexpr double kClearRange = 8.0;      // [m] cells farther than this are left unchanged
@@ -21,13 +24,15 @@ constexpr double kFaded = 0.15;          // [m] around a faded cell: its obstacl
 constexpr std::size_t kCells = std::size_t{LocalMap::kSize} * LocalMap::kSize;
 constexpr std::size_t kMostBeams = 4096;  // of a scan; reserved from the start
 constexpr double kMiddle = 4.0;           // [m] the robot may be this far from the window's middle
+constexpr double kTileEdge = BuildingMemory::kTileEdge;  // [m]
 
 }  // namespace
 
-LocalMap::LocalMap(Distances distances)
+LocalMap::LocalMap(Distances distances, Ageing ageing)
     : hits_(static_cast<std::uint8_t*>(std::calloc(kCells, 1))),
       seen_(std::make_unique_for_overwrite<std::uint16_t[]>(kCells)),
-      means_(std::make_unique_for_overwrite<Offset[]>(kCells)) {
+      means_(std::make_unique_for_overwrite<Offset[]>(kCells)),
+      ageing_(ageing) {
   if (hits_ == nullptr) throw std::bad_alloc();
   active_.reserve(kCells);
   moved_.reserve(kCells);
@@ -42,26 +47,38 @@ void LocalMap::reset(const Vec2& centre_W) {
   active_.clear();
   scans_ = 0;
   looks_ = {};
+  way_ = 0;
+  last_W_.reset();
+  next_survey_ = 0;
   space_.reset(centre_W);
   const double half = kSize * kCell / 2;
-  corner_W_ = {std::floor((centre_W.x() - half) / kCell) * kCell,
-               std::floor((centre_W.y() - half) / kCell) * kCell};
+  corner_W_ = {std::round((centre_W.x() - half) / kTileEdge) * kTileEdge,
+               std::round((centre_W.y() - half) / kTileEdge) * kTileEdge};
 }
 
-bool LocalMap::follow(const Vec2& position_W) {
+std::uint16_t LocalMap::now() const {
+  return static_cast<std::uint16_t>(
+      ageing_ == Ageing::ByScans ? scans_ : static_cast<std::uint32_t>(way_ / kWayUnit));
+}
+
+bool LocalMap::follow(const Vec2& position_W, BuildingMemory* memory) {
   space_.follow(position_W);
+  if (last_W_) way_ += (position_W - *last_W_).norm();
+  last_W_ = position_W;
   const double half = kSize * kCell / 2;
   const Vec2 off = position_W - corner_W_ - Vec2(half, half);
   if (std::abs(off.x()) < kMiddle && std::abs(off.y()) < kMiddle) return false;
   const auto tiles = [](double metres) {
     return static_cast<int>(std::lround(metres / (LocalMap::kCell * DistanceField::kTile)));
   };
-  shift(tiles(off.x()), tiles(off.y()));
+  shift(tiles(off.x()), tiles(off.y()), memory);
   return true;
 }
 
-/// Copies the cells that stay inside. Forgets those that leave; new ones are free.
-void LocalMap::shift(int tile_columns, int tile_rows) {
+/// Copies the cells that stay inside. Forgets those that leave; new ones are free, unless `memory`
+/// knows better.
+void LocalMap::shift(int tile_columns, int tile_rows, BuildingMemory* memory) {
+  if (memory != nullptr) keep_leaving(tile_columns, tile_rows, *memory);
   const int columns = tile_columns * DistanceField::kTile;
   const int rows = tile_rows * DistanceField::kTile;
   corner_W_ += Vec2(columns * kCell, rows * kCell);
@@ -82,6 +99,7 @@ void LocalMap::shift(int tile_columns, int tile_rows) {
     means_[moved.cell] = moved.mean;
     hits_[moved.cell] = moved.hits;
   }
+  if (memory != nullptr) restore_entering(tile_columns, tile_rows, *memory);
 }
 
 void LocalMap::insert(const LaserScan& scan,
@@ -91,7 +109,7 @@ void LocalMap::insert(const LaserScan& scan,
   ++scans_;
   suspects_.clear();
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (scan.status[i] == Beam::Ok && !tracker.on_moving(i)) hit(points_W[i]);
+    if (scan.status[i] == Beam::Ok && !tracker.on_moving(i) && !is_mixed(scan, i)) hit(points_W[i]);
   }
   look_through(scan, sensor_W);
   space_.look(scan, sensor_W);
@@ -109,7 +127,7 @@ void LocalMap::hit(const Vec2& point_W) {
   const std::uint8_t before = hits_[cell];
   if (before == 0) active_.push_back(static_cast<std::uint32_t>(cell));
   hits_[cell] = std::min<std::uint8_t>(kMost, before + kHit);
-  seen_[cell] = static_cast<std::uint16_t>(scans_);
+  seen_[cell] = now();
   // A mean that forgets, so that it follows drift.
   const Vec2 off = point_W - centre_W(cell);
   Offset& mean = means_[cell];
@@ -181,11 +199,22 @@ void LocalMap::drop_active(std::size_t i) {
   active_.pop_back();
 }
 
-void LocalMap::age() {
-  const auto now = static_cast<std::uint16_t>(scans_);
+void LocalMap::forget_doubtful() {
   for (std::size_t i = 0; i < active_.size();) {
     const std::size_t cell = active_[i];
-    const auto since = static_cast<std::uint16_t>(now - seen_[cell]);
+    if (hits_[cell] >= kSure) {
+      ++i;
+      continue;
+    }
+    weaken(cell, kMost);
+    drop_active(i);
+  }
+}
+
+void LocalMap::age() {
+  for (std::size_t i = 0; i < active_.size();) {
+    const std::size_t cell = active_[i];
+    const auto since = static_cast<std::uint16_t>(now() - seen_[cell]);
     if (since < age_after_) {
       ++i;
       continue;

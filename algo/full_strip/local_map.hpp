@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "algo/full_strip/building_memory.hpp"
 #include "algo/full_strip/distance_field.hpp"
 #include "algo/full_strip/seen_space.hpp"
 #include "algo/full_strip/tracker.hpp"
@@ -23,8 +24,8 @@ namespace algo {
 /// A square window of the odometry frame W that follows the robot in whole cells.
 ///
 /// A cell is occupied after two hits. It is free again after the scanner has looked through it
-/// several times. Where the scanner does not look, a cell ages, and then counts as never seen.
-/// Allocates in the constructor only.
+/// several times. Where the scanner does not look, a cell ages, and then counts as never seen. Ages
+/// count scans, or the robot's way. Allocates in the constructor only.
 class LocalMap {
  public:
   static constexpr double kCell = DistanceField::kCell;    // [m]
@@ -36,17 +37,24 @@ class LocalMap {
   /// and most of its work. Without them do not call distance(), gradient(), sees() or
   /// cell_distance().
   enum class Distances : std::uint8_t { Kept, None };
-  explicit LocalMap(Distances distances = Distances::Kept);
+  enum class Ageing : std::uint8_t { ByScans, ByWay };
+  explicit LocalMap(Distances distances = Distances::Kept, Ageing ageing = Ageing::ByScans);
   bool keeps_distances() const { return field_.has_value(); }
 
   /// Forgets everything and centres the window on `centre_W`.
   void reset(const Vec2& centre_W);
 
-  /// Sets the number of scans without a hit after which a cell begins to fade.
-  void remember_for(std::uint16_t scans) { age_after_ = scans; }
+  /// Sets the number of scans, or of kWayUnit of way, without a hit after which a cell begins to
+  /// fade.
+  void remember_for(std::uint16_t age) { age_after_ = age; }
+  static constexpr double kWayUnit = 0.1;  // [m]
 
-  /// Moves the window if the robot has left its middle; true if it moved.
-  bool follow(const Vec2& position_W);
+  /// Moves the window if the robot has left its middle; true if it moved. What leaves the window is
+  /// kept in `memory`, and what enters it is read from there.
+  bool follow(const Vec2& position_W, BuildingMemory* memory = nullptr);
+  /// Writes the clearances of `tiles` of the window's tiles into the coarse layer of `memory`, in
+  /// turn. Left out are the window's outermost tiles, whose surroundings are not known.
+  void survey(int tiles, BuildingMemory& memory);
 
   /// Enters the hits of `scan` as points of W, except those on moving obstacles, and clears the
   /// cells that it looked through. `sensor_W` is the scanner's pose at the middle of its sweep,
@@ -63,6 +71,9 @@ class LocalMap {
       if (hits_[cell] > 0 && free(mean_W(cell))) clear(cell);
     });
   }
+
+  /// Frees the cells with few hits: ghosts at the edges of things have few, walls have many.
+  void forget_doubtful();
 
   /// [m] Distance from `p_W` to the nearest occupied cell's centre, at most kReach; kReach outside.
   double distance(const Vec2& p_W) const;
@@ -132,7 +143,13 @@ class LocalMap {
   bool weaken(std::size_t cell, int by);
   void clear(std::size_t cell);
   void drop_active(std::size_t i);
-  void shift(int tile_columns, int tile_rows);
+  void shift(int tile_columns, int tile_rows, BuildingMemory* memory);
+  void keep_leaving(int tile_columns, int tile_rows, BuildingMemory& memory) const;
+  void restore_entering(int tile_columns, int tile_rows, const BuildingMemory& memory);
+  void restore(int column, int row, const BuildingMemory::Tile& tile);
+  int tile_column() const;
+  int tile_row() const;
+  std::uint16_t now() const;
 
   Vec2 corner_W_{0, 0};
   struct Release {
@@ -141,7 +158,7 @@ class LocalMap {
 
   // Only cells with hits are written: most of a window takes up no memory.
   std::unique_ptr<std::uint8_t[], Release> hits_;
-  std::unique_ptr<std::uint16_t[]> seen_;  // scan number of the last hit
+  std::unique_ptr<std::uint16_t[]> seen_;  // now() at the last hit
   std::unique_ptr<Offset[]> means_;        // of the hits
   std::vector<Moved> moved_;
   std::vector<std::uint32_t> active_;    // cells with hits
@@ -149,7 +166,11 @@ class LocalMap {
   std::optional<DistanceField> field_{};
   SeenSpace space_{};
   std::uint16_t age_after_ = 20 * 30;
+  Ageing ageing_ = Ageing::ByScans;
   std::uint32_t scans_ = 0;
+  double way_ = 0;                        // [m] driven
+  std::optional<Vec2> last_W_{};          // place of the robot
+  int next_survey_ = 0;                   // of the window's tiles
   std::array<std::uint32_t, 2> looks_{};  // by scanners that look ahead, and back
 };
 

@@ -20,6 +20,7 @@ class HullCheck {
   explicit HullCheck(const RobotSpec& spec = {});
   bool is_of(const RobotSpec& spec) const;
   double half_width() const { return half_width_; }  // [m] of the hull, or the radius of a disc
+  bool is_round() const { return half_length_ <= 0; }
   /// [m] Free room around the hull at `pose_W`. Exact if less than kExact; negative if something is
   /// inside the hull.
   double clearance(const LocalMap& map, const Pose2& pose_W) const;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "algo/full_strip/planner.hpp"
 #include "algo/strip/strip.hpp"
 
 namespace algo {
@@ -138,11 +137,11 @@ double NodeStrip::broken_at(const LocalMap& map, const StripSettings& settings) 
   return -1;
 }
 
-double NodeStrip::cost(const LocalMap& map) const {
+double NodeStrip::cost(const LocalMap& map, const StepCost& step) const {
   double sum = 0;
   for (std::size_t i = 1; i < nodes_.size(); ++i) {
     const Vec2& p = nodes_[i].position_W;
-    sum += (p - nodes_[i - 1].position_W).norm() * Planner::unit_cost(map.distance(p));
+    sum += (p - nodes_[i - 1].position_W).norm() * step.of(map.distance(p));
   }
   return sum;
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "algo/full_strip/local_map.hpp"
+#include "algo/full_strip/step_cost.hpp"
 #include "algo/recycled.hpp"
 #include "algo/types.hpp"
 
@@ -45,8 +46,8 @@ class NodeStrip {
   /// [m] Distance from the robot to the first node without room; negative if there is none.
   double broken_at(const LocalMap& map, const StripSettings& settings) const;
 
-  /// Cost [m] of the strip by the planner's cost function.
-  double cost(const LocalMap& map) const;
+  /// Cost [m] of the strip by the planner's cost function, as if all of it had been seen.
+  double cost(const LocalMap& map, const StepCost& step) const;
   /// [m] Length along its nodes.
   double length() const;
   /// The point `s` [m] along the strip; its end if the strip is shorter.

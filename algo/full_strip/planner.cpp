@@ -5,13 +5,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <new>
 
 namespace algo {
 namespace {
 
 struct Move {
   int x = 0, y = 0;
-  float length = 0;  // [m]
+  float length = 0;  // [m] on the fine lattice
 };
 constexpr float kStraight = 0.1F;
 constexpr float kDiagonal = 0.14142136F;
@@ -23,80 +24,109 @@ constexpr std::array<Move, 8> kMoves{{{1, 0, kStraight},
                                       {-1, -1, kDiagonal},
                                       {0, -1, kStraight},
                                       {1, -1, kDiagonal}}};
-constexpr std::uint8_t kRoot = 255;
-constexpr double kAtRobot = 0.3;        // [m] around the robot, where every point may be left
-constexpr double kLeaving = 8;          // [m per m] if there is too little room
-constexpr float kBucket = 0.02F;        // [m]
-constexpr std::size_t kBuckets = 8192;  // 160 m; costlier points share the last
-constexpr double kComfort = 0.7;        // [m] clearance above which more is not worth a detour
-constexpr double kBorder = 0.5;         // [m] at the map's border, where no goal may lie
-constexpr int kSearchFree = 15;         // lattice steps: the largest distance of a replaced goal
+constexpr float kAcross = 1.5F;           // fine steps between a fine and a coarse point
+constexpr float kCoarseStep = 2;          // fine steps between coarse points
+constexpr double kAtRobot = 0.3;          // [m] around the robot, where every point may be left
+constexpr float kLeaving = 8;             // [m per m] if there is too little room
+constexpr float kBucket = 0.05F;          // [m]
+constexpr std::size_t kBuckets = 32'768;  // 1.6 km; costlier points share the last
+constexpr std::size_t kMostEntries = 2'000'000;  // then nothing farther is searched
+constexpr int kSearchFree = 15;        // lattice steps: the largest distance of a replaced goal
+constexpr int kAroundSeen = 20;        // coarse cells around all that was seen
+constexpr int kMostCoarse = 480;       // coarse cells from the robot
+constexpr double kCoarseDoubt = 0.03;  // [m] by which a remembered clearance may be too low
+constexpr double kDoubtBelow = 0.06;   // [m] below and above the least clearance, where it is
+constexpr double kDoubtAbove = 0.02;   //     measured exactly
+constexpr int kExactCost = 3;          // of the budget
+constexpr double kUnseenRoom = 0.05;   // [m] more, for an unseen goal
+constexpr double kAside = 0.06;  // [m] from a lattice point to the roomiest place it stands for
 
 }  // namespace
 
 Planner::Planner()
-    : opened_(static_cast<std::size_t>(kSize) * kSize),
-      closed_(opened_.size()),
-      g_(opened_.size()),
-      towards_(opened_.size()),
-      costed_(opened_.size()),
-      cost_(opened_.size()),
-      buckets_(kBuckets) {
-  entries_.reserve(4 * opened_.size());
+    : points_(static_cast<Point*>(std::calloc(kCount, sizeof(Point)))), buckets_(kBuckets) {
+  if (points_ == nullptr) throw std::bad_alloc();
+  entries_.reserve(kMostEntries);
 }
 
-double Planner::unit_cost(double d) {
-  const double lacking = std::max(0.0, kComfort - d) / 0.5;
-  return 1 + 3 * lacking * lacking;
+Planner::Id Planner::coarse_id(Cell c) const {
+  constexpr unsigned kMask = kCoarse - 1;
+  return kFineCount + (static_cast<unsigned>(c.row) & kMask) * kCoarse +
+         (static_cast<unsigned>(c.column) & kMask);
 }
 
-std::uint32_t Planner::point_at(const Vec2& p_W) const {
+/// The cell that shares the memory of `coarse` and is nearest to the robot.
+Planner::Cell Planner::cell_of(Id coarse) const {
+  constexpr unsigned kMask = kCoarse - 1;
+  constexpr int kToMiddle = kFine / 4;  // of the map, in coarse cells
+  const Cell first{corner_.column + kToMiddle - kCoarse / 2, corner_.row + kToMiddle - kCoarse / 2};
+  const unsigned place = coarse - kFineCount;
+  const auto turned = [&](unsigned at, int from) {
+    return from + static_cast<int>((at - static_cast<unsigned>(from)) & kMask);
+  };
+  return {turned(place % kCoarse, first.column), turned(place / kCoarse, first.row)};
+}
+
+Planner::Id Planner::id_at(const Vec2& p_W) const {
   const Vec2 p = (p_W - corner_W_) / kStep;
-  const auto column = static_cast<std::uint32_t>(std::clamp(p.x(), 1.0, kSize - 2.0));
-  const auto row = static_cast<std::uint32_t>(std::clamp(p.y(), 1.0, kSize - 2.0));
-  return row * kSize + column;
+  const double most = kFine * 100.0;
+  const int column = static_cast<int>(std::floor(std::clamp(p.x(), -most, most)));
+  const int row = static_cast<int>(std::floor(std::clamp(p.y(), -most, most)));
+  return is_inner(column, row) ? fine_id(column, row) : coarse_id(BuildingMemory::cell_of(p_W));
 }
 
-Vec2 Planner::position_W(std::uint32_t point) const {
-  const std::uint32_t column = point % kSize;
-  const std::uint32_t row = point / kSize;
-  return corner_W_ + Vec2((column + 0.5) * kStep, (row + 0.5) * kStep);
+Vec2 Planner::position_W(Id id) const {
+  if (!is_fine(id)) return BuildingMemory::middle_W(cell_of(id));
+  return corner_W_ + Vec2((id % kFine + 0.5) * kStep, (id / kFine + 0.5) * kStep);
 }
 
-/// [m] Clearance at the corner that the lattice point's four cells share.
-double Planner::clearance(const LocalMap& map, std::uint32_t point) const {
-  const int column = static_cast<int>(point % kSize) * 2;
-  const int row = static_cast<int>(point / kSize) * 2;
+/// The point, emptied if an earlier search wrote it.
+Planner::Point& Planner::at(Id id) {
+  Point& point = points_[id];
+  if (point.round != round_) point = Point{.round = round_};
+  return point;
+}
+
+/// [m] Of a fine point: at the corner that its four cells share. Of a coarse one: the most that is
+/// remembered of its cell, as if all were free where nothing is.
+double Planner::clearance(const PlanWorld& world, Id id) const {
+  if (!is_fine(id)) {
+    const std::uint8_t cm = world.memory.clearance(cell_of(id));
+    return cm == BuildingMemory::kUnknown ? LocalMap::kReach : cm * 0.01 + kCoarseDoubt;
+  }
+  const int column = static_cast<int>(id % kFine) * 2;
+  const int row = static_cast<int>(id / kFine) * 2;
+  const LocalMap& map = world.map;
   const int sum = map.cell_distance(column, row) + map.cell_distance(column + 1, row) +
                   map.cell_distance(column, row + 1) + map.cell_distance(column + 1, row + 1);
   return sum * 0.00025;
 }
 
-bool Planner::near_robot(std::uint32_t point) const {
-  return (position_W(point) - robot_W_).squaredNorm() < kAtRobot * kAtRobot;
+bool Planner::near_robot(Id id) const {
+  return (position_W(id) - robot_W_).squaredNorm() < kAtRobot * kAtRobot;
 }
 
 /// Octile distance to the robot: a lower bound of the cost.
-float Planner::heuristic(std::uint32_t point) const {
-  const int dx = std::abs(static_cast<int>(point % kSize) - static_cast<int>(robot_ % kSize));
-  const int dy = std::abs(static_cast<int>(point / kSize) - static_cast<int>(robot_ / kSize));
-  const auto low = static_cast<float>(std::min(dx, dy));
-  const auto high = static_cast<float>(std::max(dx, dy));
+float Planner::heuristic(Id id) const {
+  const Vec2 d = (position_W(id) - robot_W_).cwiseAbs() / kStep;
+  const auto low = static_cast<float>(d.minCoeff());
+  const auto high = static_cast<float>(d.maxCoeff());
   return kStraight * (high - low) + kDiagonal * low;
 }
 
-void Planner::push(std::uint32_t point, float g, std::uint8_t towards) {
-  opened_[point] = round_;
-  g_[point] = g;
-  towards_[point] = towards;
-  const auto bucket = static_cast<std::size_t>((g + heuristic(point)) / kBucket);
-  const std::size_t at = std::clamp(bucket, bucket_, kBuckets - 1);
-  entries_.push_back({point, buckets_[at]});
-  buckets_[at] = static_cast<std::uint32_t>(entries_.size());
+void Planner::push(Id id, float g, Id parent) {
+  if (entries_.size() == kMostEntries) return;
+  Point& point = at(id);
+  point.g = g;
+  point.parent = parent;
+  const auto bucket = static_cast<std::size_t>((g + heuristic(id)) / kBucket);
+  const std::size_t place = std::clamp(bucket, bucket_, kBuckets - 1);
+  entries_.push_back({id, buckets_[place]});
+  buckets_[place] = static_cast<std::uint32_t>(entries_.size());
 }
 
 /// One of the cheapest waiting points.
-std::optional<std::uint32_t> Planner::pop() {
+std::optional<Planner::Id> Planner::pop() {
   while (bucket_ < kBuckets && buckets_[bucket_] == 0) ++bucket_;
   if (bucket_ == kBuckets) return std::nullopt;
   const Entry entry = entries_[buckets_[bucket_] - 1];
@@ -104,127 +134,250 @@ std::optional<std::uint32_t> Planner::pop() {
   return entry.point;
 }
 
-/// Cost [m per m] of a step to `point`; negative if there is no way.
-float Planner::cost_of(const LocalMap& map, std::uint32_t point) {
-  if (costed_[point] == round_) return cost_[point];
-  const double d = clearance(map, point);
-  double cost = unit_cost(d);
-  if (d < least_clearance_) cost = near_robot(point) ? kLeaving : -1;
-  costed_[point] = round_;
-  return cost_[point] = static_cast<float>(cost);
+/// Cost [m per m] of a step to the point; negative if there is no way.
+float Planner::cost_of(const PlanWorld& world, Id id) {
+  Point& point = at(id);
+  if (point.cost == 0) point.cost = new_cost(world, id);
+  return point.cost;
+}
+
+float Planner::new_cost(const PlanWorld& world, Id id) {
+  double d = clearance(world, id);
+  const bool doubtful = d > step_.least - kDoubtBelow && d < step_.least + kDoubtAbove;
+  if (exact_ && doubtful && is_fine(id)) {
+    spent_ += kExactCost;
+    d = roomiest(world.map, position_W(id), kAside, LocalMap::kReach).distance;
+  }
+  if (d < step_.least) return near_robot(id) ? kLeaving : -1;
+  const Cell cell = is_fine(id) ? BuildingMemory::cell_of(position_W(id)) : cell_of(id);
+  const double price = world.memory.seen(cell) ? 1 : StepCost::kUnseen;
+  const double doubt = world.memory.doubtful(cell) ? StepCost::kDoubt : 0;
+  return static_cast<float>(price * step_.of(d) + doubt);
+}
+
+/// True if the goal may lie at the point. An unseen one needs more room: it may be the inside of a
+/// thing.
+bool Planner::has_room(const PlanWorld& world, Id id) const {
+  const double d = clearance(world, id);
+  const Vec2 p_W = position_W(id);
+  if (!world.memory.seen(BuildingMemory::cell_of(p_W))) return d >= step_.least + kUnseenRoom;
+  if (d >= step_.least) return true;
+  return exact_ && is_fine(id) &&
+         roomiest(world.map, goal_W_, kAside, LocalMap::kReach).distance >= step_.least;
 }
 
 /// The nearest point with room to stand, preferably a seen one. An unseen point may be the inside
 /// of the obstacle on the goal, and the robot would drive all around it to find out.
-std::uint32_t Planner::free_point(const LocalMap& map, std::uint32_t wanted) const {
-  std::uint32_t best = wanted;
+Planner::Id Planner::free_point(const PlanWorld& world, Id wanted) const {
+  if (!is_fine(wanted)) return wanted;
+  Id best = wanted;
   bool best_seen = false;
   double least = std::numeric_limits<double>::infinity();
-  const int column = static_cast<int>(wanted % kSize);
-  const int row = static_cast<int>(wanted / kSize);
-  for (int y = std::max(1, row - kSearchFree); y <= std::min(kSize - 2, row + kSearchFree); ++y) {
-    for (int x = std::max(1, column - kSearchFree); x <= std::min(kSize - 2, column + kSearchFree);
-         ++x) {
-      const auto point = static_cast<std::uint32_t>(y * kSize + x);
-      const bool seen = map.seen().seen(position_W(point));
+  const int column = static_cast<int>(wanted % kFine);
+  const int row = static_cast<int>(wanted / kFine);
+  for (int y = row - kSearchFree; y <= row + kSearchFree; ++y) {
+    for (int x = column - kSearchFree; x <= column + kSearchFree; ++x) {
+      if (!is_inner(x, y)) continue;
+      const Id id = fine_id(x, y);
+      const bool seen = world.memory.seen(BuildingMemory::cell_of(position_W(id)));
       const double far = std::hypot(x - column, y - row);
       const bool nearer = seen == best_seen ? far < least : seen;
-      if (!nearer || clearance(map, point) < least_clearance_) continue;
+      if (!nearer || clearance(world, id) < step_.least) continue;
       least = far;
-      best = point;
+      best = id;
       best_seen = seen;
     }
   }
   return best;
 }
 
-void Planner::start(const LocalMap& map,
+/// The coarse lattice ends where nothing was seen: farther ways through unseen space are as good.
+void Planner::place_bounds(const BuildingMemory& memory) {
+  const Cell robot = BuildingMemory::cell_of(robot_W_);
+  const Cell goal = BuildingMemory::cell_of(goal_W_);
+  const auto low = [](int seen, int a, int b) {
+    return std::max(std::min({seen, a, b}) - kAroundSeen, a - kMostCoarse);
+  };
+  const auto high = [](int seen, int a, int b) {
+    return std::min(std::max({seen, a, b}) + kAroundSeen, a + kMostCoarse);
+  };
+  low_ = {low(memory.low().column, robot.column, goal.column),
+          low(memory.low().row, robot.row, goal.row)};
+  high_ = {high(memory.high().column, robot.column, goal.column),
+           high(memory.high().row, robot.row, goal.row)};
+}
+
+void Planner::start(const PlanWorld& world,
                     const Vec2& robot_W,
                     const Vec2& goal_W,
-                    double least_clearance,
+                    const StepCost& cost,
+                    bool exact,
                     bool try_tight) {
-  corner_W_ = map.corner_W();
-  least_clearance_ = least_clearance;
+  corner_W_ = world.map.corner_W();
+  corner_ = BuildingMemory::cell_of(corner_W_ + Vec2(kStep, kStep));
+  step_ = cost;
+  exact_ = exact;
+  ++round_;
   robot_W_ = robot_W;
-  robot_ = point_at(robot_W);
-  goal_W_ = goal_W;
-  // For a goal beyond the map: the place where the straight line to it leaves the map.
-  const Vec2 low = corner_W_ + Vec2(kBorder, kBorder);
-  const Vec2 high = corner_W_ + Vec2(kSize * kStep - kBorder, kSize * kStep - kBorder);
+  robot_ = id_at(robot_W);
   double share = 1;
   for (int k = 0; k < 2; ++k) {
-    const double way = goal_W[k] - robot_W[k];
-    if (goal_W[k] > high[k]) share = std::min(share, (high[k] - robot_W[k]) / way);
-    if (goal_W[k] < low[k]) share = std::min(share, (low[k] - robot_W[k]) / way);
+    const double way = std::abs(goal_W[k] - robot_W[k]);
+    if (way > kFarthest) share = std::min(share, kFarthest / way);
   }
-  goal_taken_ = false;
   goal_W_ = robot_W + share * (goal_W - robot_W);
-  root_ = point_at(goal_W_);
-  const bool room = clearance(map, root_) >= least_clearance_;
+  root_ = id_at(goal_W_);
+  goal_taken_ = false;
+  const bool room = has_room(world, root_);
   goal_tight_ = !room && try_tight && near_robot(root_);
   if (!room && !goal_tight_) {
-    root_ = free_point(map, root_);
-    goal_taken_ = share >= 1;
-    goal_W_ = position_W(root_);
+    const Id free = free_point(world, root_);
+    goal_taken_ = share >= 1 && free != root_;
+    root_ = free;
+    if (goal_taken_) goal_W_ = position_W(root_);
   }
-  ++round_;
+  place_bounds(world.memory);
   entries_.clear();
   std::ranges::fill(buckets_, 0U);
   bucket_ = 0;
-  push(root_, 0, kRoot);
+  closest_W_ = goal_W_;
+  push(root_, 0, root_);
   state_ = State::Searching;
 }
 
-Planner::State Planner::search(const LocalMap& map, int budget) {
-  if (state_ == State::Searching && corner_W_ != map.corner_W()) state_ = State::Idle;
+Planner::State Planner::search(const PlanWorld& world, int budget) {
+  if (state_ == State::Searching && corner_W_ != world.map.corner_W()) state_ = State::Idle;
   if (state_ != State::Searching) return state_;
-  while (budget-- > 0) {
-    const std::optional<std::uint32_t> next = pop();
+  for (spent_ = 0; spent_ < budget; ++spent_) {
+    const std::optional<Id> next = pop();
     if (!next) return state_ = State::NoWay;
-    const std::uint32_t point = *next;
-    if (closed_[point] == round_) {
-      ++budget;
+    Point& point = at(*next);
+    if (point.closed) {
+      --spent_;
       continue;
     }
-    closed_[point] = round_;
-    if (point == robot_) return state_ = State::Found;
-    expand(map, point);
+    point.closed = true;
+    const Vec2 here_W = position_W(*next);
+    if ((here_W - robot_W_).squaredNorm() < (closest_W_ - robot_W_).squaredNorm()) {
+      closest_W_ = here_W;
+    }
+    if (*next == robot_) return state_ = State::Found;
+    if (is_fine(*next)) {
+      expand_fine(world, *next);
+    } else {
+      expand_coarse(world, *next);
+    }
   }
   return state_;
 }
 
-void Planner::expand(const LocalMap& map, std::uint32_t point) {
-  const int column = static_cast<int>(point % kSize);
-  const int row = static_cast<int>(point / kSize);
-  for (std::size_t m = 0; m < kMoves.size(); ++m) {
-    const int x = column + kMoves[m].x;
-    const int y = row + kMoves[m].y;
-    if (x < 1 || y < 1 || x >= kSize - 1 || y >= kSize - 1) continue;
-    const auto next = static_cast<std::uint32_t>(y * kSize + x);
-    if (closed_[next] == round_) continue;
-    const float cost = cost_of(map, next);
-    if (cost < 0) continue;
-    const float g = g_[point] + kMoves[m].length * cost;
-    if (opened_[next] == round_ && g_[next] <= g) continue;
-    push(next, g, static_cast<std::uint8_t>((m + 4) % kMoves.size()));  // back the way it came
+/// Opens `to`, a neighbour of `from`, if no better way to it is known.
+void Planner::relax(const PlanWorld& world, Id from, Id to, float length) {
+  Point& point = at(to);
+  if (point.closed) return;
+  const float cost = cost_of(world, to);
+  if (cost < 0) return;
+  const float g = points_[from].g + length * cost;
+  if (point.g >= 0 && point.g <= g) return;
+  push(to, g, from);
+}
+
+void Planner::expand_fine(const PlanWorld& world, Id id) {
+  const int column = static_cast<int>(id % kFine);
+  const int row = static_cast<int>(id / kFine);
+  for (const Move& move : kMoves) {
+    const int x = column + move.x;
+    const int y = row + move.y;
+    if (is_inner(x, y)) {
+      relax(world, id, fine_id(x, y), move.length);
+    } else {
+      const Cell cell{corner_.column + x / 2, corner_.row + y / 2};
+      relax(world, id, coarse_id(cell), kAcross * move.length);
+    }
   }
 }
 
-void Planner::path(Recycled<Vec2>& out) const {
-  out.clear();
+void Planner::expand_coarse(const PlanWorld& world, Id id) {
+  const Cell from = cell_of(id);
+  for (const Move& move : kMoves) {
+    const Cell cell{from.column + move.x, from.row + move.y};
+    if (cell.column < low_.column || cell.row < low_.row || cell.column >= high_.column ||
+        cell.row >= high_.row) {
+      continue;
+    }
+    const float length = kCoarseStep * move.length;
+    const int x = 2 * (cell.column - corner_.column);
+    const int y = 2 * (cell.row - corner_.row);
+    if (!is_inner(x, y)) {
+      relax(world, id, coarse_id(cell), length);
+      continue;
+    }
+    for (const int v : {0, 1}) {
+      for (const int u : {0, 1}) relax(world, id, fine_id(x + u, y + v), length);
+    }
+  }
+}
+
+void Planner::path(const PlanWorld& world, Path& out) const {
+  out.points_W.clear();
+  out.local = 0;
+  out.beyond = 0;
   if (state_ != State::Found) return;
-  out.push_back(robot_W_);
-  std::uint32_t point = robot_;
-  while (towards_[point] != kRoot) {
-    const Move& move = kMoves[towards_[point]];
-    point = static_cast<std::uint32_t>(static_cast<int>(point) + move.y * kSize + move.x);
-    out.push_back(position_W(point));
+  out.points_W.push_back(robot_W_);
+  bool local = true;
+  Id id = robot_;
+  for (; id != root_; id = points_[id].parent) {
+    const Id next = points_[id].parent;
+    Vec2 p_W = position_W(next);
+    if (exact_ && is_fine(next) && clearance(world, next) < step_.half_width + StepCost::kEasy) {
+      p_W = roomiest(world.map, p_W, kAside, LocalMap::kReach).p_W;
+    }
+    if (local && !is_fine(next)) {
+      local = false;
+      out.local = out.points_W.size();
+      out.beyond = static_cast<double>(points_[id].g);
+    }
+    out.points_W.push_back(p_W);
   }
-  if (out.size() > 1) {
-    out.back() = goal_W_;
+  if (out.points_W.size() > 1) {
+    out.points_W.back() = goal_W_;
   } else {
-    out.push_back(goal_W_);
+    out.points_W.push_back(goal_W_);
   }
+  if (local) out.local = out.points_W.size();
+}
+
+std::optional<double> Planner::cost_from(const Vec2& p_W) const {
+  const Point& point = points_[id_at(p_W)];
+  if (point.round != round_ || point.g < 0) return std::nullopt;
+  return static_cast<double>(point.g);
+}
+
+Roomiest roomiest(const LocalMap& map, const Vec2& p_W, double reach, double most) {
+  constexpr double kStep = 0.02;   // [m]
+  constexpr double kBeyond = 0.5;  // [m] nothing farther matters where it is narrow
+  const double look = std::min(most, kBeyond);
+  Vec2 nearest_W{0, 0};
+  const auto measure = [&](const Vec2& at_W) {
+    double least = look * look;
+    nearest_W = at_W;
+    map.each_near(at_W, look, [&](const Vec2& point_W) {
+      const double far = (point_W - at_W).squaredNorm();
+      if (far >= least) return;
+      least = far;
+      nearest_W = point_W;
+    });
+    return std::sqrt(least);
+  };
+  Roomiest best{p_W, measure(p_W)};
+  for (double way = kStep; way <= reach && nearest_W != best.p_W; way += kStep) {
+    const Vec2 away = (best.p_W - nearest_W).normalized();
+    const Vec2 next_W = best.p_W + kStep * away;
+    const double d = measure(next_W);
+    if (d <= best.distance) break;
+    best = {next_W, d};
+  }
+  return best;
 }
 
 void straighten(const LocalMap& map, double room, Recycled<Vec2>& path) {

@@ -1,20 +1,33 @@
-// algo/full_strip/planner.hpp: the deliberative layer: plans a path to the goal on the local map.
+// algo/full_strip/planner.hpp: the deliberative layer: plans a path to the goal over the local map
+// and over what is remembered beyond it.
 #pragma once
 
 #include <cstdint>
+#include <cstdlib>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "algo/full_strip/building_memory.hpp"
 #include "algo/full_strip/local_map.hpp"
+#include "algo/full_strip/step_cost.hpp"
 #include "algo/recycled.hpp"
 #include "algo/types.hpp"
 
 namespace algo {
 
-/// A* on a lattice of 0.1 m, from the goal to the robot, in bounded portions.
+/// The places to plan over.
+struct PlanWorld {
+  const LocalMap& map;
+  const BuildingMemory& memory;
+};
+
+/// A* from the goal to the robot, in bounded portions, over two lattices that are joined where they
+/// meet: one of 0.1 m over the inner tiles of the local map, and one of 0.2 m beyond them. Space
+/// that nobody has seen counts as free, at a price.
 ///
-/// A step costs its length x (1 + 3 ((0.7 - d) / 0.5)^2) for a clearance d below 0.7 m. Below the
-/// least clearance there is no way, except at the robot, which may stand anywhere.
+/// A step costs its length x StepCost::of(clearance). Below the least clearance there is no way,
+/// except at the robot, which may stand anywhere.
 class Planner {
  public:
   enum class State : std::uint8_t { Idle, Searching, Found, NoWay };
@@ -22,67 +35,119 @@ class Planner {
   Planner();
   void reset() { state_ = State::Idle; }
 
-  /// Begins a search. The nearest place with room replaces a goal without room; a place on the
-  /// border replaces a goal outside the map. With `try_tight`, a goal without room right before the
-  /// robot is kept: the map's error may account for the missing room.
-  void start(const LocalMap& map,
+  /// Begins a search. The nearest place with room replaces a goal without room; a goal farther than
+  /// kFarthest is replaced on the straight line to it. With `try_tight`, a goal without room right
+  /// before the robot is kept: the map's error may account for the missing room. `exact`: doubtful
+  /// clearances are measured to the hits themselves.
+  void start(const PlanWorld& world,
              const Vec2& robot_W,
              const Vec2& goal_W,
-             double least_clearance,
+             const StepCost& cost,
+             bool exact,
              bool try_tight);
+  static constexpr double kFarthest = 90;  // [m] along each axis
   /// Expands up to `budget` lattice points.
-  State search(const LocalMap& map, int budget);
+  State search(const PlanWorld& world, int budget);
 
   State state() const { return state_; }
   /// True if the path ends away from the requested goal because an obstacle stands there.
   bool goal_taken() const { return goal_taken_; }
   /// True if the goal was kept although it has no room.
   bool goal_tight() const { return goal_tight_; }
-  /// The path found, robot first. At most one point per lattice step.
-  void path(Recycled<Vec2>& out) const;
 
-  /// Cost [m per m] of motion with clearance `d` [m].
-  static double unit_cost(double d);
+  /// The place nearest to `robot_W` of all that the search has come to.
+  const Vec2& closest_W() const { return closest_W_; }
+
+  /// A path found.
+  struct Path {
+    Recycled<Vec2> points_W{};  // robot first, at most one point per lattice step
+    std::size_t local = 0;      // of them lie on the inner tiles of the local map, before it leaves
+    double beyond = 0;          // cost [m] of the rest
+  };
+  void path(const PlanWorld& world, Path& out) const;
+  /// Cost [m] from `p_W` to the goal, as far as the last search has come; nothing if it has not
+  /// been there.
+  std::optional<double> cost_from(const Vec2& p_W) const;
 
  private:
-  static constexpr int kSize = LocalMap::kSize / 2;
-  static constexpr double kStep = 2 * LocalMap::kCell;  // [m]
+  using Id = std::uint32_t;                          // of a lattice point: the fine ones first
+  static constexpr int kFine = LocalMap::kSize / 2;  // fine points along the window's edge
+  static constexpr int kRim = BuildingMemory::kFineSide / 2;  // of them, along its outermost tiles
+  static constexpr double kStep = 2 * LocalMap::kCell;        // [m] between fine points
+  static constexpr int kCoarse = BuildingMemory::kTiles * BuildingMemory::kCoarseSide;
+  static constexpr Id kFineCount = Id{kFine} * kFine;
+  static constexpr Id kCount = kFineCount + Id{kCoarse} * kCoarse;
+  using Cell = BuildingMemory::Cell;
+
+  struct Point {
+    std::uint32_t round = 0;  // of the search that wrote it; zero: never
+    Id parent = 0;            // on the way to the goal; the root is its own
+    float g = -1;             // [m] negative: not opened
+    float cost = 0;           // [m per m] negative: no way; 0: not yet known
+    bool closed = false;
+  };
   /// A point waiting to be expanded; the entries of a bucket are chained.
   struct Entry {
-    std::uint32_t point = 0;
+    Id point = 0;
     std::uint32_t next = 0;  // entry + 1; 0: the last
   };
-  std::uint32_t point_at(const Vec2& p_W) const;
-  Vec2 position_W(std::uint32_t point) const;
-  double clearance(const LocalMap& map, std::uint32_t point) const;
-  bool near_robot(std::uint32_t point) const;
-  float heuristic(std::uint32_t point) const;
-  void push(std::uint32_t point, float g, std::uint8_t towards);
-  std::optional<std::uint32_t> pop();
-  float cost_of(const LocalMap& map, std::uint32_t point);
-  std::uint32_t free_point(const LocalMap& map, std::uint32_t wanted) const;
-  void expand(const LocalMap& map, std::uint32_t point);
+  struct Release {
+    void operator()(void* memory) const { std::free(memory); }
+  };
+
+  static bool is_fine(Id id) { return id < kFineCount; }
+  static bool is_inner(int column, int row) {
+    return column >= kRim && row >= kRim && column < kFine - kRim && row < kFine - kRim;
+  }
+  Id fine_id(int column, int row) const { return static_cast<Id>(row * kFine + column); }
+  Id coarse_id(Cell c) const;
+  Cell cell_of(Id coarse) const;
+  Id id_at(const Vec2& p_W) const;
+  Vec2 position_W(Id id) const;
+  Point& at(Id id);
+  bool near_robot(Id id) const;
+  float heuristic(Id id) const;
+  double clearance(const PlanWorld& world, Id id) const;
+  float cost_of(const PlanWorld& world, Id id);
+  float new_cost(const PlanWorld& world, Id id);
+  void push(Id id, float g, Id parent);
+  std::optional<Id> pop();
+  void relax(const PlanWorld& world, Id from, Id to, float length);
+  void expand_fine(const PlanWorld& world, Id id);
+  void expand_coarse(const PlanWorld& world, Id id);
+  bool has_room(const PlanWorld& world, Id id) const;
+  Id free_point(const PlanWorld& world, Id wanted) const;
+  void place_bounds(const BuildingMemory& memory);
 
   State state_ = State::Idle;
   bool goal_taken_ = false;
   bool goal_tight_ = false;
-  double least_clearance_ = 0;
-  Vec2 corner_W_{0, 0};
+  bool exact_ = false;
+  StepCost step_{};
+  Vec2 corner_W_{0, 0};  // of the fine lattice
+  Cell corner_{};        // the same, in coarse cells
   Vec2 robot_W_{0, 0};
   Vec2 goal_W_{0, 0};
-  std::uint32_t robot_ = 0;
-  std::uint32_t root_ = 0;
-  std::uint32_t round_ = 0;                     // of the search; data of earlier rounds is void
-  std::vector<std::uint32_t> opened_, closed_;  // the last round in which a point was
-  std::vector<float> g_;                        // [m]
-  std::vector<std::uint8_t> towards_;           // the neighbour on the way to the goal
-  std::vector<std::uint32_t> costed_;           // the round in which cost_ was found
-  std::vector<float> cost_;                     // [m per m]; negative: no way
-  // A queue of buckets kBucket wide. Costs rise along a search, so the first filled bucket is near.
+  Vec2 closest_W_{0, 0};
+  Id robot_ = 0;
+  Id root_ = 0;
+  Cell low_{}, high_{};                       // bounds of the coarse lattice
+  std::uint32_t round_ = 0;                   // of the search; data of earlier rounds is void
+  int spent_ = 0;                             // of the budget, on exact clearances
+  std::unique_ptr<Point[], Release> points_;  // zero, and out of memory, until searched
+  // A queue of buckets. Costs rise along a search, so the first filled bucket is near.
   std::vector<std::uint32_t> buckets_;  // entry + 1
   std::vector<Entry> entries_;
   std::size_t bucket_ = 0;
 };
+
+/// The place within `reach` [m] of `p_W` that is farthest from all hits, approached by small steps,
+/// and its distance [m] to the nearest, at most `most`.
+struct Roomiest {
+  Vec2 p_W{0, 0};
+  double distance = 0;
+};
+Roomiest roomiest(const LocalMap& map, const Vec2& p_W, double reach, double most);
 
 /// Removes points of `path` wherever the straight line past them keeps `room` [m]. This removes the
 /// lattice's corners in open space.

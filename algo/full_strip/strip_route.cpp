@@ -2,7 +2,7 @@
 #include "algo/full_strip/strip_route.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cstdint>
 #include <utility>
 
 #include "algo/full_strip/progress_watch.hpp"
@@ -10,33 +10,46 @@
 namespace algo {
 namespace {
 
-constexpr std::array<double, 3> kRoom{0.065, 0.035, 0.010};  // [m] beside the hull, level by level
-constexpr int kExpansions = 400;                             // of the planner in a tick
-constexpr int kExpansionsNow = 1200;                         // if there is no strip to follow
+constexpr double kRoundRoom = 0.02;   // [m] beside a disc, whose clearance is measured exactly
+constexpr double kRoom = 0.01;        // [m] beside another hull, on a lattice that errs
+constexpr int kExpansions = 400;      // of the planner in a tick
+constexpr int kExpansionsNow = 1600;  // if there is no strip to follow
 constexpr double kOtherShare = 0.9;   // a new strip below this share of the old cost replaces it,
-constexpr double kNearer = 0.5;       // [m] or if it ends this much nearer to the goal,
+constexpr double kNearer = 0.5;       // [m] or if it goes on this much farther towards the goal,
 constexpr double kNearerTaken = 0.1;  // [m] or this much if an obstacle stands on the goal;
 constexpr double kAtGoal = 1e-6;      // [m] or if it ends at the goal and the old one does not
 constexpr int kSweepsNew = 15;        // of a new strip
 constexpr int kSweeps = 5;            // in a tick
 constexpr double kTryTight = 4.0;     // [s] for which it tries for a near goal without room
 constexpr double kLastLeg = 2 * LocalMap::kReach;  // [m] to the goal
-constexpr double kGives = 0.08;  // [m] by which the strip stays inside its rest distance
+constexpr double kGives = 0.08;   // [m] by which the strip stays inside its rest distance
+constexpr double kSameWay = 0.6;  // [m] from the old strip's end: a path past it goes on from there
+constexpr double kAgainAfter = 1.0;     // [s] after a search without a way
+constexpr double kDoubtTime = 1.5;      // [s] for which the map drops what it doubts
+constexpr double kWatchFrom = 1.2;      // [m] before a place that was shut,
+constexpr double kWatchTime = 20;       // [s]
+constexpr double kThere = 0.3;          // [m]
+constexpr std::uint8_t kLongSeen = 30;  // beams through a place that was free for long,
+constexpr double kSeenBefore = 0.3;     // [m] on the strip from here
+constexpr double kSeenBehind = 0.9;     // [m] to there
 
 }  // namespace
 
 void StripRoute::reset() {
   set_goal({0, 0}, 0);
   goal_W_.reset();
-  path_W_.clear();
+  path_ = {};
 }
 
 void StripRoute::set_goal(const Vec2& goal_W, double now) {
   goal_W_ = goal_W;
   strip_.clear();
   planner_.reset();
-  level_ = 0;
-  no_way_ = false;
+  failures_ = 0;
+  closure_.reset();
+  watch_.reset();
+  aim_ = Aim::Goal;
+  doubts_ = false;
   goal_taken_ = false;
   tight_since_.reset();
   broken_at_ = -1;
@@ -55,17 +68,21 @@ void StripRoute::give_up(double now) {
 }
 
 void StripRoute::update(const RouteSettings& settings,
-                        const LocalMap& map,
+                        const PlanWorld& world,
                         const Vec2& here_W,
                         double now) {
   settings_ = settings;
-  ease_last_leg(map, here_W);
-  stretch(map, here_W, now);
-  plan(map, here_W, now);
+  doubts_ = false;
+  settings_.strip.least_clearance = step_cost().least - settings_.break_room;
+  ease_last_leg(world.map, here_W);
+  stretch(world.map, here_W, now);
+  note_closure(world);
+  plan(world, here_W, now);
 }
 
-double StripRoute::least_clearance() const {
-  return settings_.half_width + kRoom[level_];
+StepCost StripRoute::step_cost() const {
+  const double room = settings_.round ? kRoundRoom : kRoom;
+  return {.half_width = settings_.half_width, .least = settings_.half_width + room};
 }
 
 /// [m] Distance from the end of `strip` to the goal.
@@ -81,7 +98,7 @@ bool StripRoute::goal_taken(double reach) const {
 /// last leg the strip keeps it, instead of swinging out only to swing in again.
 void StripRoute::ease_last_leg(const LocalMap& map, const Vec2& here_W) {
   if ((*goal_W_ - here_W).norm() > kLastLeg) return;
-  const double room = std::max(map.distance(*goal_W_) + kGives, least_clearance());
+  const double room = std::max(map.distance(*goal_W_) + kGives, step_cost().least);
   settings_.strip.rest_distance = std::min(settings_.strip.rest_distance, room);
 }
 
@@ -90,80 +107,152 @@ void StripRoute::stretch(const LocalMap& map, const Vec2& here_W, double now) {
   if (strip_.empty()) return;
   strip_.follow(here_W);
   strip_.relax(map, settings_.strip, kSweeps);
-  StripSettings narrow = settings_.strip;
-  narrow.least_clearance = settings_.half_width + kRoom.back() - settings_.break_room;
-  broken_at_ = strip_.broken_at(map, narrow);
+  broken_at_ = strip_.broken_at(map, settings_.strip);
   if (broken_at_ >= 0) next_plan_ = std::min(next_plan_, now);
 }
 
 /// The deliberative layer: one portion of a search each tick, a new search every plan_period.
-void StripRoute::plan(const LocalMap& map, const Vec2& here_W, double now) {
+void StripRoute::plan(const PlanWorld& world, const Vec2& here_W, double now) {
   if (planner_.state() != Planner::State::Searching && now >= next_plan_) {
-    start_search(map, here_W, now);
+    start_search(world, here_W, now);
   }
   if (planner_.state() != Planner::State::Searching) return;
   const bool urgent = strip_.empty() || broken_at_ >= 0;
-  switch (planner_.search(map, urgent ? kExpansionsNow : kExpansions)) {
+  switch (planner_.search(world, urgent ? kExpansionsNow : kExpansions)) {
     case Planner::State::Found:
-      take_plan(map, here_W);
+      if (aim_ == Aim::Goal) {
+        failures_ = 0;
+        if (watch_) strip_.clear();  // it leads elsewhere
+        watch_.reset();
+        closure_.reset();
+      }
+      if (aim_ != Aim::Reach) take_plan(world, here_W);
       return;
     case Planner::State::NoWay:
-      if (level_ + 1 < kRoom.size()) {
-        ++level_;
-        next_plan_ = now;
-      } else {
-        no_way_ = true;
-        level_ = 0;
-      }
+      fail(world, here_W, now);
       return;
     default:
       return;
   }
 }
 
-void StripRoute::start_search(const LocalMap& map, const Vec2& here_W, double now) {
-  // Low clearance at the goal does not mean that an obstacle stands on it.
-  while (level_ + 1 < kRoom.size() && map.distance(*goal_W_) < least_clearance() &&
-         map.seen().seen(*goal_W_)) {
-    ++level_;
-  }
+void StripRoute::start_search(const PlanWorld& world, const Vec2& here_W, double now) {
+  aim_ = Aim::Goal;
   const double patience = ProgressWatch::time_for(kTryTight, settings_.max_v);
   const bool try_tight = !tight_since_ || now - *tight_since_ < patience;
-  planner_.start(map, here_W, *goal_W_, least_clearance(), try_tight);
+  planner_.start(world, here_W, *goal_W_, step_cost(), settings_.round, try_tight);
   if (planner_.goal_tight() && !tight_since_) tight_since_ = now;
   next_plan_ = now + settings_.plan_period;
 }
 
-/// Makes the plan the strip if there is none, or if it is clearly better than the present one.
-void StripRoute::take_plan(const LocalMap& map, const Vec2& here_W) {
-  no_way_ = false;
-  planner_.path(path_W_);
-  straighten(map, settings_.strip.rest_distance, path_W_);
-  candidate_.lay(path_W_);
-  candidate_.follow(here_W);
-  StripSettings settings = settings_.strip;
-  settings.least_clearance = least_clearance() - settings_.break_room;
-  candidate_.relax(map, settings, kSweepsNew);
-  if (candidate_.broken_at(map, settings) >= 0) {
-    // Relaxing moved it off its way: take the plan as it is.
-    candidate_.lay(path_W_);
-    candidate_.follow(here_W);
+/// Remembers where a strip broke at a place that had been free for long, before and behind it too:
+/// a door has closed. Behind a wall that is seen for the first time, nothing was seen before.
+void StripRoute::note_closure(const PlanWorld& world) {
+  if (broken_at_ < 0 || strip_.empty() || watch_) return;
+  for (double s = broken_at_ - kSeenBefore; s <= broken_at_ + kSeenBehind;
+       s += NodeStrip::kSpacing) {
+    const Vec2 at_W = strip_.at(std::max(0.0, s));
+    if (world.memory.crossings(BuildingMemory::cell_of(at_W)) < kLongSeen) return;
   }
-  // A strip may end short of the goal, if the goal lay beyond the map or an obstacle stands on it.
-  // It may well cost less than one that ends nearer.
-  const bool was_taken = std::exchange(goal_taken_, planner_.goal_taken());
-  if (is_better(map, goal_taken_ || was_taken ? kNearerTaken : kNearer)) {
-    std::swap(strip_, candidate_);
-    broken_at_ = -1;
-  }
-  level_ = 0;  // the next search begins with the widest again
+  closure_ = Watch{strip_.at(std::max(0.0, broken_at_ - kWatchFrom)), strip_.at(broken_at_), {}};
 }
 
-/// True if the candidate should replace the strip. `nearer` [m]: see kNearer.
-bool StripRoute::is_better(const LocalMap& map, double nearer) const {
-  return strip_.empty() || broken_at_ >= 0 || left(candidate_) < left(strip_) - nearer ||
-         (left(candidate_) < kAtGoal && left(strip_) >= kAtGoal) ||
-         candidate_.cost(map) < kOtherShare * strip_.cost(map);
+/// A search has found no way. The first one to the goal in a row makes the map drop its doubtful
+/// cells. After the second there is no way.
+void StripRoute::fail(const PlanWorld& world, const Vec2& here_W, double now) {
+  if (aim_ == Aim::Reach) {
+    watch_ = Watch{planner_.closest_W(), *goal_W_, {}};
+    search_for_watch(world, here_W);
+    return;
+  }
+  if (aim_ == Aim::Watch) {
+    watch_.reset();
+    closure_.reset();
+    next_plan_ = now + kAgainAfter;
+    return;
+  }
+  if (failures_ < kSurely) ++failures_;
+  if (!no_way()) {
+    doubts_ = true;
+    next_plan_ = now + kDoubtTime;
+    return;
+  }
+  next_plan_ = now + kAgainAfter;
+  wait_for_way(world, here_W, now);
+}
+
+/// A door may open: the robot waits at one that it saw shut, for a while, and then at the place
+/// within reach that is nearest to the goal.
+void StripRoute::wait_for_way(const PlanWorld& world, const Vec2& here_W, double now) {
+  if (!watch_) {
+    strip_.clear();
+    broken_at_ = -1;
+    path_.points_W.clear();
+    watch_ = closure_;
+  }
+  if (!watch_) {
+    aim_ = Aim::Reach;
+    planner_.start(world, *goal_W_, here_W, step_cost(), settings_.round, false);
+    return;
+  }
+  if (!watch_->since && (watch_->from_W - here_W).norm() < kThere) watch_->since = now;
+  if (!watch_->since) {
+    search_for_watch(world, here_W);
+    return;
+  }
+  strip_.clear();
+  if (!closure_ || now - *watch_->since < kWatchTime) return;
+  watch_.reset();
+  closure_.reset();
+}
+
+void StripRoute::search_for_watch(const PlanWorld& world, const Vec2& here_W) {
+  aim_ = Aim::Watch;
+  planner_.start(world, here_W, watch_->from_W, step_cost(), settings_.round, false);
+}
+
+/// Makes the plan the strip if there is none, or if it is clearly better than the present one.
+void StripRoute::take_plan(const PlanWorld& world, const Vec2& here_W) {
+  planner_.path(world, path_);
+  line_W_.clear();
+  for (std::size_t i = 0; i < path_.local; ++i) line_W_.push_back(path_.points_W[i]);
+  straighten(world.map, settings_.strip.rest_distance, line_W_);
+  candidate_.lay(line_W_);
+  candidate_.follow(here_W);
+  candidate_.relax(world.map, settings_.strip, kSweepsNew);
+  if (candidate_.broken_at(world.map, settings_.strip) >= 0) {
+    // Relaxing moved it off its way: take the plan as it is.
+    candidate_.lay(line_W_);
+    candidate_.follow(here_W);
+  }
+  const bool taken = aim_ == Aim::Goal && planner_.goal_taken();
+  const bool was_taken = std::exchange(goal_taken_, taken);
+  if (!is_better(world.map, was_taken)) return;
+  std::swap(strip_, candidate_);
+  broken_at_ = -1;
+}
+
+/// True if the candidate should replace the strip.
+bool StripRoute::is_better(const LocalMap& map, bool was_taken) const {
+  if (strip_.empty() || broken_at_ >= 0) return true;
+  // A strip that ends beside the goal, since an obstacle stands there, may well cost less than one
+  // that ends nearer.
+  if ((goal_taken_ || was_taken) && left(candidate_) < left(strip_) - kNearerTaken) return true;
+  if (left(candidate_) < kAtGoal && left(strip_) >= kAtGoal) return true;
+  const std::optional<double> rest = planner_.cost_from(strip_.end_W());
+  if (!rest || is_extended()) return true;
+  const StepCost step = step_cost();
+  return candidate_.cost(map, step) + path_.beyond < kOtherShare * (strip_.cost(map, step) + *rest);
+}
+
+/// True if the new path goes on where the strip ends.
+bool StripRoute::is_extended() const {
+  const std::optional<double> rest = planner_.cost_from(strip_.end_W());
+  if (!rest || path_.beyond > *rest - kNearer) return false;
+  for (std::size_t i = 0; i < path_.local; ++i) {
+    if ((path_.points_W[i] - strip_.end_W()).squaredNorm() < kSameWay * kSameWay) return true;
+  }
+  return false;
 }
 
 }  // namespace algo

@@ -6,12 +6,19 @@
 namespace algo {
 namespace {
 
-constexpr double kTrace = 0.25;  // [m] around an obstacle found moving: its traces in the map
+constexpr double kTrace = 0.25;      // [m] around an obstacle found moving: its traces in the map
+constexpr double kRemembered = 100;  // [m] of way, after which a wall not seen again fades
+constexpr int kSurveyed = 8;         // tiles of the map a tick, for planning
 
 }  // namespace
 
+StripSenses::StripSenses() {
+  map_.remember_for(static_cast<std::uint16_t>(kRemembered / LocalMap::kWayUnit));
+}
+
 void StripSenses::reset(const Pose2& start_W) {
   map_.reset(start_W.position());
+  memory_.reset();
   tracker_.reset();
   points_.reset();
   placed_ = false;
@@ -20,7 +27,7 @@ void StripSenses::reset(const Pose2& start_W) {
 void StripSenses::update(const ControlInput& in, const HullCheck& hull, bool track) {
   const Pose2& here = in.odometry.pose;
   points_.follow(here, in.stamp);
-  map_.follow(here.position());
+  map_.follow(here.position(), &memory_);
   if (!placed_) hull.take_place(map_.seen(), here);
   placed_ = true;
   hull.stand_on(map_.seen(), here);
@@ -29,8 +36,10 @@ void StripSenses::update(const ControlInput& in, const HullCheck& hull, bool tra
     const Pose2 sensor_W = points_.map(scan);
     if (track) tracker_.update(scan, sensor_W, points_.points_W());
     map_.insert(scan, sensor_W, points_.points_W(), tracker_);
+    memory_.look(scan, sensor_W);
     forget_traces(in, hull);
   }
+  map_.survey(kSurveyed, memory_);
   tracker_.predict(in.stamp);
 }
 

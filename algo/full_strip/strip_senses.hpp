@@ -1,8 +1,9 @@
-// algo/full_strip/strip_senses.hpp: the full strip's picture of the world: the map of the scans and
-// the tracks of moving obstacles.
+// algo/full_strip/strip_senses.hpp: the full strip's picture of the world: the map of the scans,
+// what is remembered beyond it, and the tracks of moving obstacles.
 #pragma once
 
 #include "algo/controller.hpp"
+#include "algo/full_strip/building_memory.hpp"
 #include "algo/full_strip/local_map.hpp"
 #include "algo/full_strip/motion.hpp"
 #include "algo/full_strip/scan_points.hpp"
@@ -12,19 +13,25 @@ namespace algo {
 
 class StripSenses {
  public:
+  StripSenses();
   void reset(const Pose2& start_W);
   /// Enters the scan of this tick, if it is new, each beam from the pose at which it was fired.
   /// `track`: whether to look for moving obstacles.
   void update(const ControlInput& in, const HullCheck& hull, bool track);
 
+  /// Frees what is in the map on little evidence.
+  void forget_doubtful() { map_.forget_doubtful(); }
+
   const LocalMap& map() const { return map_; }
+  const BuildingMemory& memory() const { return memory_; }
   const Tracker& tracker() const { return tracker_; }
 
  private:
   void forget_traces(const ControlInput& in, const HullCheck& hull);
 
   ScanPoints points_{};
-  LocalMap map_{};
+  LocalMap map_{LocalMap::Distances::Kept, LocalMap::Ageing::ByWay};
+  BuildingMemory memory_{};
   Tracker tracker_{};
   bool placed_ = false;  // the start pose is entered into the map
 };

@@ -23,6 +23,7 @@ enum State : std::uint8_t {
   kNoWay,        // the map has no path to the goal
   kBlocked,      // no motion is free at present
   kGoalTaken,    // an obstacle stands on the goal; drives no farther
+  kPlanning,     // stands until the planner has found a way
 };
 // NOLINTEND(readability-identifier-naming)
 

@@ -17,9 +17,12 @@ constexpr double kTurnShare = 0.8;     // of the turn rate that the profile assu
 constexpr double kBrakeShare = 0.7;    // of the deceleration
 constexpr double kTurnOnSpot = 1.2;    // [rad] heading error above which the robot turns first
 constexpr double kTurnGain = 2.5;      // [1/s]
+constexpr double kFacing = 0.2;        // [rad] heading error with which a disc faces the strip
 constexpr double kArc = 0.1;           // [rad] heading error that an arc removes by itself,
 constexpr double kArcPerSpeed = 1.0;   // [rad per m/s] and more with speed
 constexpr std::array<double, 5> kShares{1, 0.75, 0.5, 0.3, 0.15};
+constexpr double kSlowShare = 0.4;     // of the speed: slower motions
+constexpr double kSlowMargin = 0.022;  // [m] need less room
 constexpr double kFloor = 0.02;  // [m] below it only an escape is tried; above a scanner's error
 constexpr double kStepSlack = 0.002;    // [m] a position may be this much nearer than the last
 constexpr double kReverseSpeed = 0.24;  // [m/s]
@@ -112,7 +115,8 @@ bool VelocityStage::admissible(const StageInput& in,
   // The robot's distance along the strip when its command begins to act.
   s += (state.pose_W.position() - in.strip->nodes()[0].position_W).norm();
   // Already too close: no step may lead closer until there is room again.
-  double margin = std::min(kMargin, hull_.clearance(*in.map, state.pose_W) - kStepSlack);
+  const double wanted = share < kSlowShare ? kSlowMargin : kMargin;
+  double margin = std::min(wanted, hull_.clearance(*in.map, state.pose_W) - kStepSlack);
   if (margin < kFloor) return false;
   const int ticks = std::max(1, static_cast<int>(std::lround(kHorizon / in.dt)));
   for (int k = 0; k < ticks; ++k) {
@@ -127,7 +131,7 @@ bool VelocityStage::admissible(const StageInput& in,
     if (hull_.enters_unseen(in.map->seen(), state.pose_W, state.twist)) return false;
     const double room = hull_.clearance(*in.map, state.pose_W);
     if (room < margin) return false;
-    margin = std::max(margin, std::min(kMargin, room - kStepSlack));
+    margin = std::max(margin, std::min(wanted, room - kStepSlack));
     // The strip may change at the next tick, or a person may press Stop.
     if (k == 0 && !rests_clear(*in.map, hull_, state, in.limits, in.dt, margin)) return false;
     if (state.twist == Twist2{} && command == Twist2{}) return true;
@@ -149,7 +153,17 @@ std::optional<Twist2> VelocityStage::follow(const StageInput& in, Weighing& out)
   for (const double share : kShares) {
     if (const auto twist = attempt(share)) return twist;
   }
-  return std::nullopt;
+  return turned_in_place(in);
+}
+
+/// A disc at rest may turn towards the strip however close things are: its outline stays the same.
+std::optional<Twist2> VelocityStage::turned_in_place(const StageInput& in) const {
+  if (!hull_.is_round() || in.state.twist.v != 0) return std::nullopt;
+  const Vec2 aim = to_child(in.state.pose_W, in.strip->at(lookahead(0)));
+  const double error = std::atan2(aim.y(), aim.x());
+  if (std::abs(error) < kFacing) return std::nullopt;
+  const double w_max = in.limits.max_omega;
+  return Twist2{0, std::clamp(kTurnGain * error, -w_max, w_max)};
 }
 
 std::optional<Twist2> VelocityStage::proven(const StageInput& in,

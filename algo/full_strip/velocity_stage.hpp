@@ -56,6 +56,7 @@ class VelocityStage {
   void profile(const StageInput& in);
   double speed_at(double s) const;
   Twist2 pursue(const StageInput& in, const MotionState& state, double s, double share) const;
+  std::optional<Twist2> turned_in_place(const StageInput& in) const;
   bool admissible(const StageInput& in, double share, Twist2& first, Vec2& aim_W) const;
   bool holds(const StageInput& in, const Twist2& twist, double horizon, double& gain) const;
 

@@ -20,8 +20,6 @@ constexpr double kMostReachSpeed = 0.4;  // [m/s] of the base: it can stop withi
 constexpr double kMostReachTurn = 0.8;   // [rad/s]
 constexpr double kSight = 3;             // [m] of the task, from R
 constexpr double kSameBody = 0.15;       // [m] a piece so near to a moving body is of it
-constexpr double kForesight = 2;         // [s] of a moving thing's way that is kept free
-constexpr int kForeseen = 4;             // of those places
 constexpr double kShownNear = 0.5;       // [m] of a link to a thing
 constexpr double kShowPlan = 1;          // [s] between two showings of one plan
 
@@ -30,6 +28,11 @@ constexpr LayerInfo kStripLayer{.name = "arm.strip",
                                 .kind = LayerKind::Polyline,
                                 .tone = Tone::Elastic,
                                 .axes = 3};
+constexpr LayerInfo kPathLayer{.name = "arm.path",
+                               .label = "Path that the hand shall follow",
+                               .kind = LayerKind::Polyline,
+                               .tone = Tone::Plan,
+                               .axes = 3};
 constexpr LayerInfo kNearLayer{.name = "arm.near",
                                .label = "Nearest things of the links",
                                .kind = LayerKind::Arrows,
@@ -49,6 +52,7 @@ Pose3 pose_of(const SetHandGoal& goal) {
 ReachGoal goal_of(const std::optional<SetHandGoal>& hand, const std::optional<SetGoal>& carry) {
   if (!hand) return {.then = carry, .carries = true};
   return {.hand_W = pose_of(*hand),
+          .path_W = hand->path_W,
           .arm_angle = hand->arm_angle,
           .base_stays = hand->base_stays,
           .then = hand->then};
@@ -71,20 +75,6 @@ ReachRules session_rules() {
   ReachRules rules;
   rules.here_first = true;
   return rules;
-}
-
-/// Where something will be counts as taken already: a base that has stopped in somebody's way does
-/// not get out of it.
-void keep_ahead_free(std::vector<Solid>& near) {
-  const std::size_t count = near.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    if (near[i].velocity_W.isZero()) continue;
-    for (int k = 1; k <= kForeseen; ++k) {
-      Solid then = near[i].after(kForesight * k / kForeseen);
-      then.velocity_W.setZero();
-      near.push_back(then);
-    }
-  }
 }
 
 }  // namespace
@@ -110,7 +100,8 @@ void ArmBehaviour::reset(const Pose2& /*start_W*/) {
   shown_plan_ = 0;
   now_.reset();
   points_.reset();
-  movers_.reset();
+  ahead_.reset();
+  beside_.reset();
   hand_goal_.reset();
   carry_goal_.reset();
   joint_goal_.reset();
@@ -132,29 +123,39 @@ void ArmBehaviour::sense(const Resource& in) {
   now_.reset();
   if (!finite(seen.odometry.pose) || !std::isfinite(seen.stamp)) return;
   look(seen);
+  unseen_.clear();
+  for (MoverWatch* watch : {&ahead_, &beside_}) {
+    watch->each(seen.stamp, [this](const Track& track) { see_move(track); });
+  }
   known_.find_near(seen.odometry.pose.position(), kSight, near_);
-  movers_.each(seen.stamp, [&](const Track& track) {
-    for (Solid& solid : near_) {
-      const double apart = (solid.centre_W - track.position_W).norm();
-      if (apart < track.radius + kSameBody) solid.velocity_W = track.velocity_W;
-    }
-  });
+  near_.insert(near_.end(), unseen_.begin(), unseen_.end());
   keep_ahead_free(near_);
   if (!seen.joints) return;
   const ArmJoints q = joints_of(seen.joints->position);
   if (q.allFinite()) now_ = body_joints(seen.odometry.pose, q);
 }
 
+/// A body that no scanner sees any more goes on.
+void ArmBehaviour::see_move(const Track& track) {
+  if (known_.set_moving(track.position_W, track.radius + kSameBody, track.velocity_W)) return;
+  Solid& body = unseen_.emplace_back();
+  body.centre_W = track.position_W;
+  body.rounding = track.radius;
+  body.velocity_W = track.velocity_W;
+}
+
 /// Each beam is mapped from where the robot was when it was fired.
 void ArmBehaviour::look(const Observation& seen) {
   points_.follow(seen.odometry.pose, seen.stamp);
   const LaserScan* const ahead = front_scan(seen);
+  MoverWatch* other = &beside_;  // a tracker follows one scanner
   for (const LaserScan& scan : seen.scans) {
     const bool readable = scan.size() > 0 && std::isfinite(scan.stamp) && all_finite(scan.ranges);
     if (!readable) continue;  // NaN must not enter
     const Pose2 sensor_W = points_.map(scan);
     known_.see(scan, sensor_W, points_.points_W());
-    if (&scan == ahead) movers_.take(scan, sensor_W, points_.points_W());
+    MoverWatch* const watch = &scan == ahead ? &ahead_ : std::exchange(other, nullptr);
+    if (watch != nullptr) watch->take(scan, sensor_W, points_.points_W());
   }
 }
 
@@ -195,7 +196,8 @@ std::optional<ArmBehaviour::Drive> ArmBehaviour::reach(const Resource& in) {
     begun_ = true;
   }
   task_.set_sweeps(static_cast<int>((*in.parameters)[kArmSweeps]));
-  const BodyCommand command = task_.update(*now_, near_, in.dt);
+  task_.set_hand_speed((*in.parameters)[kHandSpeed]);
+  const BodyCommand command = task_.update(*now_, near_, known_.all(), in.dt);
   if (task_.question() != nullptr && !asked_) {
     thinker_->ask(body_, *task_.question());
     asked_ = in.stamp;
@@ -267,6 +269,11 @@ void ArmBehaviour::show(Telemetry& t) {
     shown_plan_ = arm.plan;
   }
   show_things(t);
+  Layer& path = add_layer(t.layers, kPathLayer);
+  if (hand_goal_ && !hand_goal_->path_W.empty()) {
+    put(path, hand_goal_->position_W);
+    for (const Vec3& point_W : hand_goal_->path_W) put(path, point_W);
+  }
   Layer& strip = add_layer(t.layers, kStripLayer);
   if (!has_plan || !now_) return;
   for (const BodyFrames& ahead : task_.strip().frames()) put(strip, ahead.hand());

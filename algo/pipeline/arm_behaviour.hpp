@@ -28,8 +28,18 @@ inline constexpr ParameterInfo kArmSweeps{
     .step = 1,
     .initial = 20,
     .help = "How often the strip of arm and base is relaxed in one tick."};
+inline constexpr ParameterInfo kHandSpeed{
+    .name = "arm.hand_speed",
+    .label = "Speed of the hand on its path",
+    .unit = "m/s",
+    .min = 0.01,
+    .max = 0.3,
+    .step = 0.01,
+    .initial = 0.1,
+    .help = "How fast the hand goes along the path behind its goal."};
 /// The behaviour's parameters.
-inline constexpr auto kArmParameters = std::to_array<const ParameterInfo*>({&kArmSweeps});
+inline constexpr auto kArmParameters =
+    std::to_array<const ParameterInfo*>({&kArmSweeps, &kHandSpeed});
 
 /// Wants the base only for a goal of the hand, or to carry something. Before the behaviour that
 /// drives to the base's goals.
@@ -67,6 +77,7 @@ class ArmBehaviour final : public Behaviour {
   std::optional<Drive> turn(const Resource& in);
   void sense(const Resource& in);
   void look(const Observation& seen);
+  void see_move(const Track& track);
   void show_things(Telemetry& t) const;
 
   RobotSpec spec_;
@@ -75,7 +86,8 @@ class ArmBehaviour final : public Behaviour {
   std::unique_ptr<ReachThinker> thinker_;
   KnownThings known_{};
   ScanPoints points_{};
-  MoverWatch movers_{};  // of the scanner ahead
+  MoverWatch ahead_{};   // of the scanner ahead,
+  MoverWatch beside_{};  // and of the first other one
   ArmGuard guard_;
   ReachTask task_;
 
@@ -90,6 +102,7 @@ class ArmBehaviour final : public Behaviour {
   // Of the tick:
   double stamp_ = 0;                 // [s] run clock
   std::optional<BodyJoints> now_{};  // none without a reading of the joints
+  std::vector<Solid> unseen_{};      // bodies that have moved out of sight
   std::vector<Solid> near_{};
   std::optional<SetHandGoal> hand_goal_{};
   std::optional<SetGoal> carry_goal_{};

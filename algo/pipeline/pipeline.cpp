@@ -59,6 +59,17 @@ bool within_unit(double axis) {
   return axis >= -1.0 && axis <= 1.0;
 }  // false for NaN
 
+/// [m] Of the hand's way from its goal on.
+double path_length(const SetHandGoal& goal) {
+  double length = 0;
+  Vec3 last = goal.position_W;
+  for (const Vec3& point : goal.path_W) {
+    length += (point - last).norm();
+    last = point;
+  }
+  return length;
+}
+
 }  // namespace
 
 Pipeline::Pipeline(const PipelineConfig& config,
@@ -179,9 +190,17 @@ std::optional<std::string> Pipeline::refusal_of(const SetHandGoal& hand) const {
   if (arm_ == nullptr) return kNoArm;
   const Quaternion& a = hand.attitude_W;
   const double length = std::sqrt(a.w * a.w + a.x * a.x + a.y * a.y + a.z * a.z);
-  if (!hand.position_W.allFinite() || !std::isfinite(hand.arm_angle.value_or(0))) {
+  const auto good = [](const Vec3& point_W) { return point_W.allFinite(); };
+  if (!good(hand.position_W) || !std::ranges::all_of(hand.path_W, good) ||
+      !std::isfinite(hand.arm_angle.value_or(0))) {
     return "The hand's goal must be finite numbers.";
   }
+  if (hand.path_W.size() > kMostPathPoints) {
+    return "The hand's path has more than " + std::to_string(kMostPathPoints) + " points.";
+  }
+  if (!(path_length(hand) <= kLongestPath))
+    return "The hand's path is longer than " + std::to_string(static_cast<int>(kLongestPath)) +
+           " m.";
   if (!(std::abs(length - 1) < kUnitError)) return "The hand's attitude must be a unit quaternion.";
   return hand.then ? refusal_of(*hand.then) : std::nullopt;
 }

@@ -40,7 +40,7 @@ constexpr std::string_view kStyle =
 
 Eigen::AlignedBox2d bounds_of(const sim::Scenario& scenario, std::span<const DrawnPath> paths) {
   Eigen::AlignedBox2d bounds(scenario.start.position());
-  if (scenario.goal) bounds.extend(scenario.goal->position_W);
+  if (const auto end_W = scenario.end_W()) bounds.extend(*end_W);
   for (const algo::Obstacle& obstacle : scenario.obstacles) bounds.extend(bounds_W(obstacle));
   for (const DrawnPath& path : paths) {
     for (const Vec2& p_W : path.track_W) bounds.extend(p_W);
@@ -62,9 +62,10 @@ void draw_world(const sim::Scenario& scenario, double goal_radius, SvgPlot& plot
   const Vec2 start_W = scenario.start.position();
   plot.circle(start_W, radius, "class=\"outline\" stroke-dasharray=\"3 3\"");
   plot.text(start_W + Vec2(0, -radius - 0.15), "start");
-  if (!scenario.goal) return;
-  plot.circle(scenario.goal->position_W, goal_radius, "class=\"outline\"");
-  plot.text(scenario.goal->position_W + Vec2(0.15, 0.15), "goal");
+  const std::optional<Vec2> end_W = scenario.end_W();
+  if (!end_W) return;
+  plot.circle(*end_W, goal_radius, "class=\"outline\"");
+  plot.text(*end_W + Vec2(0.15, 0.15), "goal");
 }
 
 }  // namespace

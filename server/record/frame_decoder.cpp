@@ -18,6 +18,9 @@ namespace fb = tautline::wire;
 algo::Vec2 from_wire(const fb::Vec2& v) {
   return {v.x(), v.y()};
 }
+algo::Vec3 from_wire(const fb::Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
 algo::Vec2 from_wire(const fb::Vec2f& v) {
   return {v.x(), v.y()};
 }
@@ -120,7 +123,12 @@ algo::SetHandGoal read_hand_goal(const fb::SetHandGoal& goal) {
     throw WireError("A goal of the hand in the frame lacks its position or attitude.");
   }
   algo::SetHandGoal out;
-  out.position_W = {goal.position()->x(), goal.position()->y(), goal.position()->z()};
+  out.position_W = from_wire(*goal.position());
+  if (goal.path() != nullptr) {
+    check_alignment(*goal.path());
+    out.path_W.reserve(goal.path()->size());
+    for (const fb::Vec3* point : *goal.path()) out.path_W.push_back(from_wire(*point));
+  }
   const fb::Quaternion& a = *goal.attitude();
   out.attitude_W = {a.w(), a.x(), a.y(), a.z()};
   if (const auto angle = goal.arm_angle()) out.arm_angle = *angle;

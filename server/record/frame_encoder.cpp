@@ -22,6 +22,9 @@ using Offset = flatbuffers::Offset<T>;
 fb::Vec2 to_wire(const algo::Vec2& v) {
   return {v.x(), v.y()};
 }
+fb::Vec3 to_wire(const algo::Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
 fb::Vec2f to_float(const algo::Vec2& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y())};
 }
@@ -116,7 +119,11 @@ Offset<flatbuffers::Vector<double>> write_joints(Builder& b, const algo::JointVa
 
 Offset<fb::SetHandGoal> write_hand_goal(Builder& b, const algo::SetHandGoal& goal) {
   const algo::Quaternion& a = goal.attitude_W;
-  const fb::Vec3 position(goal.position_W.x(), goal.position_W.y(), goal.position_W.z());
+  const fb::Vec3 position = to_wire(goal.position_W);
+  std::vector<fb::Vec3> path;
+  path.reserve(goal.path_W.size());
+  for (const algo::Vec3& point_W : goal.path_W) path.push_back(to_wire(point_W));
+  const auto points = path.empty() ? 0 : b.CreateVectorOfStructs(path.data(), path.size());
   const fb::Quaternion attitude(a.w, a.x, a.y, a.z);
   const auto then = goal.then ? write_goal(b, *goal.then) : 0;
   fb::SetHandGoalBuilder out(b);
@@ -125,6 +132,7 @@ Offset<fb::SetHandGoal> write_hand_goal(Builder& b, const algo::SetHandGoal& goa
   if (goal.arm_angle) out.add_arm_angle(*goal.arm_angle);
   out.add_base_stays(goal.base_stays);
   out.add_then(then);
+  out.add_path(points);
   return out.Finish();
 }
 

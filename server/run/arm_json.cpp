@@ -71,6 +71,15 @@ void read_values(const JsonReader& in,
   if (in.has(key)) values = joint_values(in, key, range, unit);
 }
 
+algo::Vec3 place_from_json(const JsonReader& in) {
+  return {in.number("x", kCoordinate), in.number("y", kCoordinate), in.number("z", kCoordinate)};
+}
+
+algo::Vec3 path_point_from_json(const JsonReader& in) {
+  in.only({"x", "y", "z"});
+  return place_from_json(in);
+}
+
 json in_degrees(const algo::JointValues& radians) {
   json out = json::array();
   for (const double value : radians) {
@@ -110,8 +119,7 @@ algo::SetHandGoal hand_goal_from_json(const JsonReader& in) {
   constexpr NumberRange kUnit{-1, 1};
   constexpr double kUnitError = 1e-3;  // of the length; a person may round
   algo::SetHandGoal goal;
-  goal.position_W = {
-      in.number("x", kCoordinate), in.number("y", kCoordinate), in.number("z", kCoordinate)};
+  goal.position_W = place_from_json(in);
   algo::Quaternion& a = goal.attitude_W;
   const bool given = in.has("qw") || in.has("qx") || in.has("qy") || in.has("qz");
   a = {in.number_or("qw", given ? 0 : 1, kUnit),
@@ -124,6 +132,11 @@ algo::SetHandGoal hand_goal_from_json(const JsonReader& in) {
   }
   if (in.has("arm_angle")) goal.arm_angle = algo::wrap_angle(in.number("arm_angle", {-1e3, 1e3}));
   goal.base_stays = in.flag_or("base_stays", false);
+  if (in.has("path")) {
+    in.each("path", algo::kMostPathPoints, [&](const json& point, const std::string& at) {
+      goal.path_W.push_back(path_point_from_json(JsonReader(point, at)));
+    });
+  }
   if (in.has("then")) goal.then = strict_goal(in.object("then"));
   return goal;
 }
@@ -155,6 +168,9 @@ json to_json(const algo::SetHandGoal& goal) {
               {"qz", a.z}};
   if (goal.arm_angle) out["arm_angle"] = *goal.arm_angle;
   if (goal.base_stays) out["base_stays"] = true;
+  for (const algo::Vec3& p : goal.path_W) {
+    out["path"].push_back({{"x", p.x()}, {"y", p.y()}, {"z", p.z()}});
+  }
   if (goal.then) out["then"] = to_json(*goal.then);
   return out;
 }

@@ -22,16 +22,16 @@ nlohmann::json to_json(const sim::ArmModel& arm);
 std::optional<algo::ArmSpec> arm_spec_from_json(const JsonReader& spec);
 nlohmann::json spec_json(const algo::ArmSpec& arm);
 
-/// {"x","y","z","qw"?,"qx"?,"qy"?,"qz"?,"arm_angle"?,"base_stays"?,"then"?}; without an attitude
-/// the hand points along the world's z axis. Throws DocumentError.
+/// {"x","y","z","qw"?,"qx"?,"qy"?,"qz"?,"arm_angle"?,"base_stays"?,"path"?,"then"?}; without
+/// an attitude the hand points along the world's z axis. Throws DocumentError.
 algo::SetHandGoal hand_goal_from_json(const JsonReader& in);
 nlohmann::json to_json(const algo::SetHandGoal& goal);
 /// "x,y,z" or "x,y,z,qx,qy,qz,qw", as on the command line. Throws DocumentError naming `field`.
 algo::SetHandGoal hand_goal_from_text(const std::string& text, const std::string& field);
 /// Seven numbers [rad] with commas between them.
 algo::JointValues joints_from_text(const std::string& text, const std::string& field);
-inline constexpr std::array<std::string_view, 11> kHandGoalFields{
-    "type", "x", "y", "z", "qw", "qx", "qy", "qz", "arm_angle", "base_stays", "then"};
+inline constexpr std::array<std::string_view, 12> kHandGoalFields{
+    "type", "x", "y", "z", "qw", "qx", "qy", "qz", "arm_angle", "base_stays", "path", "then"};
 
 /// Seven numbers at `key`, each within `range`. Throws DocumentError.
 algo::JointValues joint_values(const JsonReader& in,

@@ -95,7 +95,7 @@ TEST(Explain, TheFullStripTellsTheDistanceAlongIt) {
 TEST(Explain, EveryStateOfEveryControllerHasItsSentences) {
   for (const auto& about : builtin_controllers().entries()) {
     const auto controller = builtin_controllers().at(about.name).make();
-    for (std::uint8_t state = 0; state <= FullStripController::kGoalTaken; ++state) {
+    for (std::uint8_t state = 0; state <= FullStripController::kPlanning; ++state) {
       Telemetry t = driving();
       t.output.state = state;
       explain(t, *controller, t.words);

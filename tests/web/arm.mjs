@@ -250,6 +250,23 @@ test("carried past a post: the legend, a link's card, an earlier instant, the st
   await p.close();
 });
 
+test("along a path: the page says that the hand follows it, and draws it", { timeout: 120_000 }, async () => {
+  const world = await json(server.base, "/scenarios/arm_follow");
+  const p = await fresh({}, { ...world, physics: "kinematic" });
+  await control({ action: "speed", speed: 4 });
+  await control({ action: "play" });
+  await until("on the path", 60, async () => (await session()).why === "The robot follows its path with the hand.");
+  await p.page.getByText("The robot follows its path with the hand.").first().waitFor();
+  await control({ action: "pause" });
+  await p.shot("arm_follow");
+  await control({ action: "play" });
+  await arrived("the end of the path");
+  const { pose, why } = await session();
+  assert.equal(why, "The hand is at the end of its path.");
+  assert.ok(pose.x > 2, "the base has come along");
+  await p.close();
+});
+
 test("by touch: the sheet on a phone, the gizmo under a finger, every size", { timeout: 240_000 }, async () => {
   const p = await fresh({ size: phone, touch: true });
   await send("PUT", "/session/hand_goal", { x: 0.4, y: -0.2, z: 1.0, ...kAhead, base_stays: true });

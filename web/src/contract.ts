@@ -19,6 +19,7 @@ export interface HandGoalJson {
   qw: number; qx: number; qy: number; qz: number;
   arm_angle?: number; // [rad] of the elbow about the line from shoulder to wrist; absent: any
   base_stays?: boolean;
+  path?: { x: number; y: number; z: number }[]; // on from there, in straight lines
   then?: GoalJson;
 }
 

@@ -189,7 +189,7 @@ std::vector<sim::Scenario> scenarios_from_json(const JsonReader& in,
     const std::size_t before = all.size();
     add_entry(entry, path, library, files, all);
     for (std::size_t i = before; i < all.size(); ++i) {
-      if (!all[i].goal) throw DocumentError(path, "has no goal to reach");
+      if (!all[i].end_W()) throw DocumentError(path, "has no goal to reach");
       if (!names.insert(all[i].name).second) {
         throw DocumentError(path, fmt::format("the scenario '{}' stands twice", all[i].name));
       }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -121,6 +122,7 @@ bool judge(Crossing& end,
            Crowd& crowd) {
   if (nearest.distance < kIntrusion) end.intrusion += period;
   if (nearest.distance < kPersonalSpace) end.personal += period;
+  if (std::isinf(nearest.distance)) return false;  // the last one has gone in this tick
   // Bodies that touch within a tick may have bounced apart at its end.
   if (nearest.distance > kTouch && !world.ground_truth()->collided) return false;
   if (speed >= kMovingSpeed) {

@@ -91,7 +91,8 @@ ArmDrive drive(const ArmCarried& carried,
                std::vector<algo::Solid> solids,
                const ArmReading& reading) {
   ArmDrive row{.reading = std::string(reading.name), .clearance = kInfinite};
-  algo::BodyFollower follower(carried.body, {}, reading.gains);
+  // The courses compare forces: nobody gives way otherwise.
+  algo::BodyFollower follower(carried.body, {}, reading.gains, {.gives_way = false});
   follower.begin(carried.path);
   algo::BodyJoints q = carried.path.front();
   double end = kDriveEnd;

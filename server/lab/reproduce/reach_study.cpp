@@ -65,7 +65,7 @@ Reach reach_in(const ReachWorld& world, std::uint64_t seed) {
   }
   result.clearance = body_room(body, q, world.solids);
   while (task.state() != ReachTask::State::GivenUp && result.seconds < kReachEnd) {
-    const algo::BodyCommand command = task.update(q, world.solids, kReachTick);
+    const algo::BodyCommand command = task.update(q, world.solids, world.solids, kReachTick);
     answer_at_once(task, body, q, world.solids);
     if (task.state() == ReachTask::State::Arrived) break;
     for (int part = 1; part <= kReachParts; ++part) {

@@ -159,11 +159,12 @@ net::Response get_paths(ApiContext& context, const net::Request& request, Worker
                            : std::ranges::find(all, wanted->second, &sim::Scenario::name);
     if (found == all.end()) throw DocumentError("?scenario", "the experiment has no such scenario");
     const auto number = static_cast<std::size_t>(found - all.begin());
+    const algo::Vec2 end_W = *found->end_W();  // the document has checked it
     body = {{"scenario", found->name},
             {"obstacles", outlines_json(*found)},
             {"start", to_json(found->start)},
             {"radius", found->robot.radius},
-            {"goal", {{"x", found->goal->position_W.x()}, {"y", found->goal->position_W.y()}}},
+            {"goal", {{"x", end_W.x()}, {"y", end_W.y()}}},
             {"paths", paths_json(plan, rows, number)}};
   });
   context.experiments.looked_at(experiment);

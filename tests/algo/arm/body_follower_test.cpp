@@ -38,7 +38,9 @@ BodyDrive drive_body(BodyFollower& follower,
   const MobileArm body;
   BodyDrive result;
   for (; result.seconds < longest; result.seconds += kArmTick) {
-    const BodyCommand command = follower.update(q, solids, kArmTick);
+    std::vector<Solid> seen = solids;
+    keep_ahead_free(seen);
+    const BodyCommand command = follower.update(q, seen, kArmTick);
     EXPECT_LE(std::abs(command.base.v), algo::BodyLimits{}.max_v);
     EXPECT_LE(std::abs(command.base.omega), algo::BodyLimits{}.max_omega);
     EXPECT_LE(command.rates.cwiseAbs().maxCoeff(), algo::BodyLimits{}.max_rate + 1e-9);
@@ -94,6 +96,18 @@ TEST(BodyFollower, WaitsBeforeAWayThatIsBlockedAndGoesOnOnceItIsFree) {
   EXPECT_FALSE(blocked.arrived);
   EXPECT_GT(blocked.clearance, 0.04);
   EXPECT_TRUE(drive_body(follower, blocked.end, {}).arrived);
+}
+
+TEST(BodyFollower, GetsOutOfTheWayOfWhatWalksIntoItWhereItWaits) {
+  const auto path = carried_arm::straight_path(kReach);
+  const Solid bar = arm_post(1.5, 0);
+  for (const double side : {-1.0, 1.0}) {
+    BodyFollower follower(MobileArm{}, {});
+    follower.begin(path);
+    const BodyDrive waits = drive_body(follower, path.front(), {bar}, 10);
+    const Solid walker = arm_post(waits.end[0], side * 2.5, {0, -side * 0.25});
+    EXPECT_GT(drive_body(follower, waits.end, {bar, walker}, 20).clearance, 0.02) << side;
+  }
 }
 
 TEST(BodyFollower, MovesTheArmAloneWhereTheBaseStands) {

@@ -93,6 +93,18 @@ TEST(KnownThings, WhatAScanShowsBesideThemReachesFromTheFloorUpwards) {
   EXPECT_TRUE(known.all().empty());
 }
 
+TEST(KnownThings, WhatIsSeenMovesUntilTheNextScanAndADeclaredPieceNever) {
+  KnownThings known;
+  known.reset(std::vector{table(1, 2)}, kPlane);
+  see(known, surface_ahead(1, 5));
+  EXPECT_FALSE(known.set_moving({5, 0}, 0.5, {0.3, 0}));
+  EXPECT_TRUE(known.set_moving({1.5, 0}, 0.7, {0.3, 0}));
+  EXPECT_TRUE(known.all()[0].velocity_W.isZero());
+  for (const algo::Solid& piece : known.all().subspan(1)) EXPECT_EQ(piece.velocity_W.x(), 0.3);
+  see(known, surface_ahead(1, 5));
+  for (const algo::Solid& piece : known.all()) EXPECT_TRUE(piece.velocity_W.isZero());
+}
+
 TEST(KnownThings, ALoneReturnAndOneOfADeclaredPieceAddNothing) {
   KnownThings known;
   Obstacle post{.id = 1, .pose_W = {2.1, 0, 0}, .shape = algo::Cylinder{0.1}, .height = 0.5};

@@ -22,7 +22,7 @@ struct ReachDrive {
     answer_at_once(task, scene.body, q, scene.solids);
   }
   void tick() {
-    const algo::BodyCommand command = task.update(q, scene.solids, kReachTick);
+    const algo::BodyCommand command = task.update(q, scene.solids, scene.solids, kReachTick);
     answer_at_once(task, scene.body, q, scene.solids);
     waited = waited || task.state() == ReachTask::State::Waits;
     q = moved(q, command, kReachTick);
@@ -107,11 +107,52 @@ TEST(ReachTask, GivesUpWithTheReason) {
   EXPECT_EQ(drive.q, drive.scene.start);
 }
 
+TEST(ReachTask, FollowsAPathWithTheHandFromItsGoalOnAndComesBack) {
+  Scene scene = reach_scene::over_a_table();
+  algo::ReachGoal goal{.hand_W = scene.hand_W};
+  const algo::Vec3 there_W = scene.hand_W.translation();
+  goal.path_W = {there_W + algo::Vec3(0, 0.10, 0), there_W + algo::Vec3(0, 0.10, 0.05)};
+  ReachTask task(scene.body, {});
+  BodyJoints q = scene.start;
+  task.begin(q, goal, scene.solids, 5);
+  answer_at_once(task, scene.body, q, scene.solids);
+  bool followed = false;
+  for (double time = 0; time < 120 && task.state() != ReachTask::State::Arrived;
+       time += kReachTick) {
+    ASSERT_NE(task.state(), ReachTask::State::GivenUp) << task.words();
+    const auto command = task.update(q, scene.solids, scene.solids, kReachTick);
+    answer_at_once(task, scene.body, q, scene.solids);
+    followed = followed || task.words() == "The robot follows its path with the hand.";
+    q = moved(q, command, kReachTick);
+  }
+  EXPECT_TRUE(followed);
+  EXPECT_EQ(task.words(), "The hand is at the end of its path.");
+  EXPECT_LT((body_frames(scene.body, q).hand() - goal.path_W.back()).norm(), 0.005);
+}
+
+TEST(ReachTask, PlansThroughWhatMoves) {
+  Scene scene = reach_scene::over_a_table();
+  algo::Solid walker;
+  walker.centre_W = {0.8, 0};
+  walker.rounding = 0.25;
+  for (const double speed : {0.0, 0.3}) {
+    walker.velocity_W = {0, speed};
+    scene.solids.push_back(walker);
+    ReachTask task(scene.body, {});
+    task.begin(scene.start, {scene.hand_W}, scene.solids, 5);
+    ASSERT_NE(task.question(), nullptr);
+    const bool counts = task.question()->solids.size() == scene.solids.size();
+    EXPECT_EQ(counts, speed == 0) << speed;
+    scene.solids.pop_back();
+  }
+}
+
 TEST(ReachTask, ATickOfALegAllocatesNothing) {
   ReachDrive drive(reach_scene::free_goal(0.95));
   drive.run_until([&] { return drive.q[0] > 0.5; });
   const auto before = allocations::count();
-  for (int n = 0; n < 5; ++n) drive.task.update(drive.q, drive.scene.solids, kReachTick);
+  for (int n = 0; n < 5; ++n)
+    drive.task.update(drive.q, drive.scene.solids, drive.scene.solids, kReachTick);
   EXPECT_EQ(allocations::count(), before);
 }
 

@@ -10,18 +10,47 @@
 
 namespace {
 
+using algo::BuildingMemory;
 using algo::LocalMap;
 using algo::Planner;
 using algo::Vec2;
 using walls::wall;
 
-Planner::State finish(Planner& planner, const LocalMap& map) {
-  Planner::State state = planner.state();
-  for (int k = 0; k < 10'000 && state == Planner::State::Searching; ++k) {
-    state = planner.search(map, 50);
+constexpr algo::StepCost kStepCost{.half_width = 0.28, .least = 0.3};
+
+/// A map, what is remembered beyond it, and a search over both.
+struct Search {
+  LocalMap map{};
+  BuildingMemory memory{};
+  Planner planner{};
+  Planner::Path path{};
+
+  algo::PlanWorld world() const { return {map, memory}; }
+  void start(const Vec2& from_W, const Vec2& to_W, bool try_tight = true, bool exact = false) {
+    planner.start(world(), from_W, to_W, kStepCost, exact, try_tight);
   }
-  return state;
-}
+  Planner::State finish() {
+    Planner::State state = planner.state();
+    for (int k = 0; k < 20'000 && state == Planner::State::Searching; ++k) {
+      state = planner.search(world(), 50);
+    }
+    planner.path(world(), path);
+    return state;
+  }
+  /// Remembers that the coarse cells of the rectangle are `cm` from the nearest thing.
+  void remember(const Vec2& low_W, const Vec2& high_W, std::uint8_t cm) {
+    const BuildingMemory::Cell low = BuildingMemory::cell_of(low_W);
+    const BuildingMemory::Cell high = BuildingMemory::cell_of(high_W);
+    for (int row = low.row; row <= high.row; ++row) {
+      for (int column = low.column; column <= high.column; ++column) {
+        BuildingMemory::Tile& tile =
+            memory.get(BuildingMemory::tile_of(column), BuildingMemory::tile_of(row));
+        tile.clearance[BuildingMemory::within({column, row})] = cm;
+        tile.seen[BuildingMemory::within({column, row})] = 1;
+      }
+    }
+  }
+};
 
 double length(const algo::Recycled<Vec2>& path) {
   double sum = 0;
@@ -30,88 +59,139 @@ double length(const algo::Recycled<Vec2>& path) {
 }
 
 TEST(Planner, GoesStraightWhereNothingStands) {
-  LocalMap map;
-  Planner planner;
-  planner.start(map, {0, 0}, {5, 0}, 0.3, true);
-  ASSERT_EQ(finish(planner, map), Planner::State::Found);
-  algo::Recycled<Vec2> path;
-  planner.path(path);
-  EXPECT_NEAR(length(path), 5, 0.15);
-  EXPECT_FALSE(planner.goal_taken());
+  Search search;
+  search.start({0, 0}, {5, 0});
+  ASSERT_EQ(search.finish(), Planner::State::Found);
+  EXPECT_NEAR(length(search.path.points_W), 5, 0.15);
+  EXPECT_FALSE(search.planner.goal_taken());
 }
 
 TEST(Planner, TakesTheGapAndKeepsItsClearance) {
-  LocalMap map;
-  wall(map, {2, -4}, {2, 1.0});
-  wall(map, {2, 2.0}, {2, 4});
-  Planner planner;
-  planner.start(map, {0, 0}, {4, 0}, 0.3, true);
-  ASSERT_EQ(finish(planner, map), Planner::State::Found);
-  algo::Recycled<Vec2> path;
-  planner.path(path);
-  for (const Vec2& p : path) EXPECT_GE(map.distance(p), 0.28);
+  Search search;
+  wall(search.map, {2, -4}, {2, 1.0});
+  wall(search.map, {2, 2.0}, {2, 4});
+  search.start({0, 0}, {4, 0});
+  ASSERT_EQ(search.finish(), Planner::State::Found);
+  for (const Vec2& p : search.path.points_W) EXPECT_GE(search.map.distance(p), 0.28);
 }
 
 TEST(Planner, ReportsThatThereIsNoPath) {
-  LocalMap map;
-  for (const double y : {-1.5, 1.5}) wall(map, {2.5, y}, {5.5, y});
-  for (const double x : {2.5, 5.5}) wall(map, {x, -1.5}, {x, 1.5});
-  Planner planner;
-  planner.start(map, {0, 0}, {4, 0}, 0.3, true);
-  EXPECT_EQ(finish(planner, map), Planner::State::NoWay);
+  Search search;
+  for (const double y : {-1.5, 1.5}) wall(search.map, {2.5, y}, {5.5, y});
+  for (const double x : {2.5, 5.5}) wall(search.map, {x, -1.5}, {x, 1.5});
+  search.start({0, 0}, {4, 0});
+  EXPECT_EQ(search.finish(), Planner::State::NoWay);
 }
 
 TEST(Planner, AGoalInAnObstacleIsReplacedByThePlaceBesideIt) {
-  LocalMap map;
-  wall(map, {4, -0.1}, {4, 0.1});
-  Planner planner;
-  planner.start(map, {0, 0}, {4, 0}, 0.3, true);
-  ASSERT_EQ(finish(planner, map), Planner::State::Found);
-  EXPECT_TRUE(planner.goal_taken());
+  Search search;
+  wall(search.map, {4, -0.1}, {4, 0.1});
+  search.start({0, 0}, {4, 0});
+  ASSERT_EQ(search.finish(), Planner::State::Found);
+  EXPECT_TRUE(search.planner.goal_taken());
 }
 
 TEST(Planner, AReplacedGoalLiesInSeenSpace) {
-  LocalMap map;
-  wall(map, {4, -0.5}, {4, 0.5});
-  map.seen().follow({0, 0});
-  map.seen().mark({3.2, 0}, 0.6);
-  Planner planner;
-  planner.start(map, {0, 0}, {4.05, 0}, 0.3, true);  // nearer to the wall's back
-  ASSERT_EQ(finish(planner, map), Planner::State::Found);
-  EXPECT_TRUE(planner.goal_taken());
-  algo::Recycled<Vec2> path;
-  planner.path(path);
-  EXPECT_LT(path.back().x(), 4);
+  Search search;
+  wall(search.map, {4, -0.5}, {4, 0.5});
+  search.remember({2.6, -0.6}, {3.8, 0.6}, BuildingMemory::kUnknown);
+  search.start({0, 0}, {4.05, 0});  // nearer to the wall's back
+  ASSERT_EQ(search.finish(), Planner::State::Found);
+  EXPECT_TRUE(search.planner.goal_taken());
+  EXPECT_LT(search.path.points_W.back().x(), 4);
 }
 
 TEST(Planner, ANearGoalIsTriedWithoutClearanceIfConfigured) {
-  LocalMap map;
-  wall(map, {0.5, -0.1}, {0.5, 0.1});
-  Planner planner;
+  Search search;
+  wall(search.map, {0.5, -0.1}, {0.5, 0.1});
   for (const bool try_tight : {true, false}) {
-    planner.start(map, {0, 0}, {0.25, 0}, 0.3, try_tight);
-    EXPECT_EQ(planner.goal_tight(), try_tight);
-    EXPECT_EQ(planner.goal_taken(), !try_tight);
+    search.start({0, 0}, {0.25, 0}, try_tight);
+    EXPECT_EQ(search.planner.goal_tight(), try_tight);
+    EXPECT_EQ(search.planner.goal_taken(), !try_tight);
   }
 }
 
-TEST(Planner, AGoalBeyondTheMapIsReplacedOnItsBorder) {
-  LocalMap map;
-  Planner planner;
-  planner.start(map, {0, 0}, {400, 0}, 0.3, true);
-  ASSERT_EQ(finish(planner, map), Planner::State::Found);
-  EXPECT_FALSE(planner.goal_taken());
-  algo::Recycled<Vec2> path;
-  planner.path(path);
-  EXPECT_LT(path.back().x(), 20);
+TEST(Planner, AGoalTooFarAwayIsReplacedOnTheWayToIt) {
+  Search search;
+  search.start({0, 0}, {400, 0});
+  ASSERT_EQ(search.finish(), Planner::State::Found);
+  EXPECT_FALSE(search.planner.goal_taken());
+  EXPECT_NEAR(search.path.points_W.back().x(), Planner::kFarthest, 1);
+  const Vec2 last_W = search.path.points_W[search.path.local - 1];
+  EXPECT_NEAR(last_W.x(), 11.2, 0.5);  // the map's inner tiles end there
+  EXPECT_GT(search.path.beyond, 70);
 }
 
 TEST(Planner, StaysWithinItsBudget) {
-  LocalMap map;
-  Planner planner;
-  planner.start(map, {-5, -5}, {5, 4}, 0.3, true);
-  EXPECT_EQ(planner.search(map, 10), Planner::State::Searching);
-  EXPECT_EQ(finish(planner, map), Planner::State::Found);
+  Search search;
+  search.start({-5, -5}, {5, 4});
+  EXPECT_EQ(search.planner.search(search.world(), 10), Planner::State::Searching);
+  EXPECT_EQ(search.finish(), Planner::State::Found);
+}
+
+/// Between the robot and a goal far beyond the map, a wall is remembered.
+TEST(Planner, GoesRoundWhatIsRememberedBeyondTheMap) {
+  Search search;
+  search.remember({20, -8}, {20.1, 8}, 0);
+  search.start({0, 0}, {30, 0});
+  ASSERT_EQ(search.finish(), Planner::State::Found);
+  EXPECT_GT(length(search.path.points_W), 32);
+  for (const Vec2& p : search.path.points_W) {
+    EXPECT_NE(search.memory.clearance(BuildingMemory::cell_of(p)), 0);
+  }
+}
+
+TEST(Planner, ReportsThatARememberedRoomHasNoDoor) {
+  Search search;
+  for (const double y : {-3.0, 3.0}) search.remember({25, y}, {31, y + 0.1}, 0);
+  for (const double x : {25.0, 31.0}) search.remember({x, -3}, {x + 0.1, 3.1}, 0);
+  search.start({0, 0}, {28, 0});
+  EXPECT_EQ(search.finish(), Planner::State::NoWay);
+}
+
+/// From the robot in a shut room: the search comes to the wall before the goal.
+TEST(Planner, TellsThePlaceWithinReachThatIsNearestToTheGoal) {
+  Search search;
+  for (const double y : {-2.0, 2.0}) wall(search.map, {-2, y}, {2, y});
+  for (const double x : {-2.0, 2.0}) wall(search.map, {x, -2}, {x, 2});
+  search.start({6, 0.5}, {0, 0});
+  ASSERT_EQ(search.finish(), Planner::State::NoWay);
+  EXPECT_NEAR(search.planner.closest_W().x(), 1.65, 0.15);
+  EXPECT_NEAR(search.planner.closest_W().y(), 0.5, 0.3);
+}
+
+TEST(Planner, PrefersSeenSpaceToUnseenSpace) {
+  Search search;
+  search.memory.get(0, 0);
+  wall(search.map, {4, -1}, {4, 1});
+  search.remember({-1, 0.2}, {9, 3}, BuildingMemory::kUnknown);
+  search.start({0, 0}, {8, 0});
+  ASSERT_EQ(search.finish(), Planner::State::Found);
+  for (const Vec2& p : search.path.points_W) EXPECT_GT(p.y(), -0.3);
+}
+
+/// The lattice alone sees less room in a door than there is.
+TEST(Planner, PassesADoorThatHasJustRoomEnough) {
+  int passed = 0;
+  for (int k = 0; k < 10; ++k) {
+    const double off = 0.01 * k;
+    Search search;
+    wall(search.map, {2, -4}, {2, off - 0.32});
+    wall(search.map, {2, off + 0.32}, {2, 4});
+    search.start({0, 0}, {4, 0}, true, true);
+    if (search.finish() == Planner::State::Found && length(search.path.points_W) < 5) ++passed;
+  }
+  EXPECT_EQ(passed, 10);
+}
+
+TEST(Planner, KnowsTheCostFromPlacesItHasSearched) {
+  Search search;
+  search.start({0, 0}, {5, 0});
+  ASSERT_EQ(search.finish(), Planner::State::Found);
+  EXPECT_EQ(search.planner.cost_from({5, 0}), 0);
+  ASSERT_TRUE(search.planner.cost_from({0, 0}));
+  EXPECT_NEAR(*search.planner.cost_from({0, 0}), 5 * algo::StepCost::kUnseen, 0.5);
+  EXPECT_FALSE(search.planner.cost_from({-8, 0}));
 }
 
 algo::Recycled<Vec2> path_of(std::initializer_list<Vec2> points) {

@@ -151,6 +151,11 @@ TEST(ArmPipeline, GoalsThatCannotBeAreRefusedInWords) {
             "The hand's attitude must be a unit quaternion.");
   hand.attitude_W = {};
   EXPECT_FALSE(world.pipeline.refusal(hand));
+  hand.path_W = {{0, 20, 1}, {0, 0, 1}};
+  EXPECT_EQ(world.pipeline.refusal(hand).value_or(""), "The hand's path is longer than 30 m.");
+  hand.path_W.assign(algo::kMostPathPoints + 1, hand.position_W);
+  EXPECT_EQ(world.pipeline.refusal(hand).value_or(""), "The hand's path has more than 100 points.");
+  hand.path_W.clear();
   hand.position_W.x() = std::numeric_limits<double>::infinity();
   EXPECT_EQ(world.pipeline.refusal(hand).value_or(""), "The hand's goal must be finite numbers.");
   algo::RobotSpec bare = arm_spec();

@@ -15,7 +15,7 @@ constexpr auto kAxes = algo::ring_bearings();
 constexpr double kMount = 0.3;  // [m] of each sonar from R
 
 /// A reading of the sonar along `axis`: an echo at `range` [m], or none.
-algo::RangeReading reading(double axis, double stamp, double range) {
+algo::RangeReading ring_reading(double axis, double stamp, double range) {
   const algo::Vec2 at = kMount * algo::direction(axis);
   const bool hit = range < 3;
   return {.mount_R = {at.x(), at.y(), axis},
@@ -30,7 +30,7 @@ algo::Observation round_of(double stamp, std::size_t near, double range) {
   algo::Observation observation;
   observation.stamp = stamp;
   for (std::size_t n = 0; n < kRingSonars; ++n) {
-    observation.sonar.push_back(reading(kAxes[n], stamp, n == near ? range : 3));
+    observation.sonar.push_back(ring_reading(kAxes[n], stamp, n == near ? range : 3));
   }
   return observation;
 }
@@ -65,8 +65,8 @@ TEST(OwnRing, ASilentSonarIsUnknownAfterATenthOfASecond) {
 TEST(OwnRing, AnotherRingsSonarsServeTheConesThatTheyLieIn) {
   algo::OwnRing ring;
   algo::Observation observation;
-  observation.sonar.push_back(reading(kAxes[3] + 0.2, 0, 1));
-  observation.sonar.push_back(reading(std::numbers::pi, 0, 0.5));  // behind: no cone
+  observation.sonar.push_back(ring_reading(kAxes[3] + 0.2, 0, 1));
+  observation.sonar.push_back(ring_reading(std::numbers::pi, 0, 0.5));  // behind: no cone
   ring.take(observation);
   const algo::Ring read = ring.read({}, 0, {});
   for (std::size_t n = 0; n < kRingSonars; ++n) {

@@ -105,6 +105,18 @@ std::size_t ended_in(const fs::path& folder) {
   return count;
 }
 
+TEST_F(SweepRun, AGoalOfTheHandIsAGoal) {
+  const json document = {{"name", "hand"},
+                         {"scenarios", {"arm_table"}},
+                         {"controllers", {"modified"}},
+                         {"physics", "kinematic"}};
+  const Plan hand = short_plan(document);
+  const Rows rows = run_sweep(hand, folder("hand"), {.threads = 1});
+  write_report(hand, rows, results_of(hand, rows), folder("hand"));
+  EXPECT_THAT(read_text(folder("hand") / "runs.csv"), HasSubstr("reached"));
+  EXPECT_THAT(read_text(folder("hand") / "pictures/paths_arm_table.svg"), HasSubstr(">goal<"));
+}
+
 TEST_F(SweepRun, GoesOnAfterATornFile) {
   run_and_write(plan, folder("whole"));
   run_and_write(plan, folder("torn"));

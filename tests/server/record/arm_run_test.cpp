@@ -36,6 +36,7 @@ RunSpec arm_spec(const char* scenario, const char* physics = "kinematic") {
 struct ArmOutcome {
   HeadlessResult result{};
   double hand_error = INFINITY;  // [m] at the end
+  double aside = 0;              // [m] of the hand on its path, from a line along x
   double room = INFINITY;        // [m] least, of any part to anything, by the truth
   std::size_t rates = 0;         // ticks with a moving joint
   std::string words{};
@@ -49,7 +50,10 @@ ArmOutcome run_arm(const RunSpec& spec, std::shared_ptr<RunChannel> channel = nu
     const auto q =
         algo::body_joints(t.ground_truth->pose, algo::joints_of(t.observation.joints->position));
     if (t.arm.hand_goal) {
-      out.hand_error = (body_frames(body, q).hand() - t.arm.hand_goal->position_W).norm();
+      const algo::Vec3 off_W = body_frames(body, q).hand() - t.arm.hand_goal->position_W;
+      out.hand_error = off_W.norm();
+      const bool follows = t.words.why == "The robot follows its path with the hand.";
+      if (follows) out.aside = std::max(out.aside, off_W.tail<2>().norm());
     }
     out.room = std::min(out.room, t.ground_truth->clearance);
     if (t.command.joint_rates != algo::Command{}.joint_rates) ++out.rates;
@@ -68,6 +72,7 @@ TEST(ArmFrame, AnArmComesBackFromItsFrameAndNoneCostsNothing) {
   t.ground_truth.emplace().touched = algo::BodyLink::Forearm;
   algo::SetHandGoal goal{.position_W = {1.0 / 3, 2, 3},
                          .attitude_W = {0.5, 0.5, 0.5, 0.5},
+                         .path_W = {{1, 2, 1.0 / 3}, {4, 5, 6}},
                          .arm_angle = 0.7,
                          .base_stays = true,
                          .then = algo::SetGoal{{1, 2}, 0.3}};
@@ -137,6 +142,28 @@ TEST_F(ArmRun, ARobotFetchesPastAPersonWhoWalks) {
   EXPECT_EQ(out.result.run.outcome, algo::Outcome::Reached) << out.result.run.reason;
   EXPECT_GT(out.room, 0);
   EXPECT_EQ(out.words, "The robot is back from where its hand has been.");
+}
+
+TEST_F(ArmRun, TheHandFollowsItsPathAlongAWall) {
+  for (const char* physics : {"kinematic", "bullet"}) {
+    const ArmOutcome out = run_arm(arm_spec("arm_follow", physics));
+    EXPECT_EQ(out.result.run.outcome, algo::Outcome::Reached)
+        << physics << ": " << out.result.run.reason << ' ' << out.words;
+    EXPECT_GT(out.room, 0.02) << physics;
+    EXPECT_GT(out.aside, 0) << physics;
+    EXPECT_LT(out.aside, 0.02) << physics;
+    EXPECT_EQ(out.words, "The hand is at the end of its path.") << physics;
+  }
+}
+
+TEST_F(ArmRun, APersonWhoWalksIntoTheRobotInBulletIsNotTouched) {
+  RunSpec spec = arm_spec("arm_fetch", "bullet");
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+    spec.seed = seed;
+    const ArmOutcome out = run_arm(spec);
+    EXPECT_EQ(out.result.run.outcome, algo::Outcome::Reached)
+        << seed << ": " << out.result.run.reason;
+  }
 }
 
 TEST_F(ArmRun, AGoalOutOfReachIsGivenUpInWords) {

@@ -100,10 +100,10 @@ export class ArmDesk {
   }
   async send(goal: HandGoalJson): Promise<void> {
     this.draft = goal;
-    const { x, y, z, qw, qx, qy, qz, arm_angle, base_stays, then } = goal;
+    const { x, y, z, qw, qx, qy, qz, arm_angle, base_stays, path, then } = goal;
     const order: ArmRequest = {
       type: "set_hand_goal", x, y, z, qw, qx, qy, qz, ...(arm_angle !== undefined && { arm_angle }),
-      ...(base_stays && { base_stays }), ...(then && { then }),
+      ...(base_stays && { base_stays }), ...(path && { path }), ...(then && { then }),
     };
     await this.ask("Move the hand", order, this.before());
     if (this.draft === goal) this.hold(null);

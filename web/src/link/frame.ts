@@ -209,11 +209,16 @@ function arm_of(a: wire.Arm | null): ArmFrame | null {
   };
 }
 
+function place(p: wire.Vec3): { x: number; y: number; z: number } {
+  return { x: p.x(), y: p.y(), z: p.z() };
+}
+
 function hand_goal(g: wire.SetHandGoal | null): HandGoalJson | null {
   const at = g?.position(), q = g?.attitude(), then = g?.then();
   return at && q ? {
     x: at.x(), y: at.y(), z: at.z(), qw: q.w(), qx: q.x(), qy: q.y(), qz: q.z(),
     arm_angle: g!.armAngle() ?? undefined, base_stays: g!.baseStays(), then: then ? wanted(then) : undefined,
+    ...(g!.pathLength() > 0 && { path: list(g!.pathLength(), (i) => place(g!.path(i)!)) }),
   } : null;
 }
 

@@ -1,0 +1,93 @@
+// algo/full_strip/building_memory.cpp: tiles, and the beams that cross them.
+#include "algo/full_strip/building_memory.hpp"
+
+#include <algorithm>
+#include <new>
+
+#include "algo/full_strip/mixed_beam.hpp"
+
+namespace algo {
+namespace {
+
+constexpr std::uint8_t kDoubtHere = 8;    // raised by a mixed beam where it ends,
+constexpr std::uint8_t kDoubtBeside = 4;  // and in the cells around: such ends lie far apart
+constexpr std::uint8_t kMostDoubts = 40;
+constexpr std::size_t kTileCount = std::size_t{BuildingMemory::kTiles} * BuildingMemory::kTiles;
+
+}  // namespace
+
+BuildingMemory::BuildingMemory()
+    : tiles_(static_cast<Tile*>(std::calloc(kTileCount, sizeof(Tile)))) {
+  if (tiles_ == nullptr) throw std::bad_alloc();
+}
+
+void BuildingMemory::reset() {
+  for (std::size_t i = 0; i < kTileCount; ++i) {
+    if (tiles_[i].used) tiles_[i].used = false;
+  }
+  empty_ = true;
+  low_ = {};
+  high_ = {};
+  looks_ = 0;
+}
+
+BuildingMemory::Tile& BuildingMemory::get(int column, int row) {
+  Tile& tile = tiles_[place(column, row)];
+  if (tile.used && tile.column == column && tile.row == row) return tile;
+  tile.occupied.fill(0);
+  tile.clearance.fill(kUnknown);
+  tile.seen.fill(0);
+  tile.doubts.fill(0);
+  tile.column = static_cast<std::int16_t>(column);
+  tile.row = static_cast<std::int16_t>(row);
+  tile.used = true;
+  const Cell low{column * kCoarseSide, row * kCoarseSide};
+  const Cell high{low.column + kCoarseSide, low.row + kCoarseSide};
+  low_ = empty_ ? low : Cell{std::min(low_.column, low.column), std::min(low_.row, low.row)};
+  high_ = empty_ ? high : Cell{std::max(high_.column, high.column), std::max(high_.row, high.row)};
+  empty_ = false;
+  return tile;
+}
+
+void BuildingMemory::look(const LaserScan& scan, const Pose2& sensor_W) {
+  if (!(scan.angle_increment > 0)) return;
+  // A stride so small that hardly a cell is skipped at kLook. Each call starts at another beam.
+  const double apart = kCoarse / (kLook * scan.angle_increment);
+  const auto stride = static_cast<std::size_t>(std::clamp(apart, 1.0, 64.0));
+  const Vec2 from = sensor_W.position() / kCoarse;
+  for (std::size_t i = ++looks_ % stride; i < scan.size(); i += stride) {
+    if (scan.status[i] == Beam::Invalid) continue;
+    const bool ends = scan.status[i] == Beam::Ok;
+    const double length = std::min(kLook, scan.ranges[i] - (ends ? kCoarse : 0));
+    const Vec2 way = direction(sensor_W.heading + scan.angle(i));
+    const int steps = static_cast<int>(length / kCoarse);
+    Tile* tile = nullptr;
+    for (int k = 0; k <= steps; ++k) {
+      const Cell c{static_cast<int>(std::floor(from.x() + k * way.x())),
+                   static_cast<int>(std::floor(from.y() + k * way.y()))};
+      const int column = tile_of(c.column);
+      const int row = tile_of(c.row);
+      if (tile == nullptr || tile->column != column || tile->row != row) tile = &get(column, row);
+      std::uint8_t& crossings = tile->seen[within(c)];
+      if (crossings < kMostCrossings) ++crossings;
+      std::uint8_t& doubts = tile->doubts[within(c)];
+      if (doubts > 0) --doubts;
+    }
+    if (is_mixed(scan, i) && scan.ranges[i] < kLook) {
+      doubt(cell_of(sensor_W.position() + scan.ranges[i] * way));
+    }
+  }
+}
+
+void BuildingMemory::doubt(Cell c) {
+  for (int y = -1; y <= 1; ++y) {
+    for (int x = -1; x <= 1; ++x) {
+      const Cell at{c.column + x, c.row + y};
+      std::uint8_t& doubts = get(tile_of(at.column), tile_of(at.row)).doubts[within(at)];
+      const int more = x == 0 && y == 0 ? kDoubtHere : kDoubtBeside;
+      doubts = static_cast<std::uint8_t>(std::min<int>(kMostDoubts, doubts + more));
+    }
+  }
+}
+
+}  // namespace algo

@@ -1,0 +1,105 @@
+// algo/full_strip/local_map_memory.cpp: what leaves the map's window, what enters it again, and the
+// coarse layer for planning.
+#include <algorithm>
+#include <cmath>
+
+#include "algo/full_strip/local_map.hpp"
+
+namespace algo {
+namespace {
+
+constexpr int kMapTiles = LocalMap::kSize / BuildingMemory::kFineSide;  // along the window's edge
+constexpr int kFinePerCoarse = BuildingMemory::kFineSide / BuildingMemory::kCoarseSide;
+constexpr double kMmPerCm = 10;
+constexpr std::uint8_t kRestored = 6;  // hits of a cell that enters again
+
+/// Calls `visit(column, row)` for each tile of a window of kMapTiles that lies outside the window
+/// moved by (columns, rows).
+template <typename Visit>
+void each_outside(int columns, int rows, Visit&& visit) {
+  for (int y = 0; y < kMapTiles; ++y) {
+    for (int x = 0; x < kMapTiles; ++x) {
+      const bool inside =
+          x >= columns && x < columns + kMapTiles && y >= rows && y < rows + kMapTiles;
+      if (!inside) visit(x, y);
+    }
+  }
+}
+
+}  // namespace
+
+int LocalMap::tile_column() const {
+  return static_cast<int>(std::lround(corner_W_.x() / BuildingMemory::kTileEdge));
+}
+
+int LocalMap::tile_row() const {
+  return static_cast<int>(std::lround(corner_W_.y() / BuildingMemory::kTileEdge));
+}
+
+/// The window is about to move by (tile_columns, tile_rows).
+void LocalMap::keep_leaving(int tile_columns, int tile_rows, BuildingMemory& memory) const {
+  each_outside(tile_columns, tile_rows, [&](int x, int y) {
+    memory.get(tile_column() + x, tile_row() + y).occupied.fill(0);
+  });
+  constexpr int kSide = BuildingMemory::kFineSide;
+  for (const std::uint32_t cell : active_) {
+    if (hits_[cell] < kOccupied) continue;
+    const int column = static_cast<int>(cell) % kSize;
+    const int row = static_cast<int>(cell) / kSize;
+    const int x = column / kSide - tile_columns;
+    const int y = row / kSide - tile_rows;
+    if (x >= 0 && y >= 0 && x < kMapTiles && y < kMapTiles) continue;
+    BuildingMemory::Tile& tile =
+        memory.get(tile_column() + column / kSide, tile_row() + row / kSide);
+    tile.occupied[static_cast<std::size_t>(row % kSide)] |= 1U << (column % kSide);
+  }
+}
+
+/// The window has moved by (tile_columns, tile_rows).
+void LocalMap::restore_entering(int tile_columns, int tile_rows, const BuildingMemory& memory) {
+  each_outside(-tile_columns, -tile_rows, [&](int x, int y) {
+    const BuildingMemory::Tile* const tile = memory.find(tile_column() + x, tile_row() + y);
+    if (tile != nullptr) restore(x, y, *tile);
+  });
+}
+
+/// Occupies the cells of the window's tile (column, row). The means of their hits are lost.
+void LocalMap::restore(int column, int row, const BuildingMemory::Tile& tile) {
+  constexpr int kSide = BuildingMemory::kFineSide;
+  for (int y = 0; y < kSide; ++y) {
+    const std::uint32_t bits = tile.occupied[static_cast<std::size_t>(y)];
+    for (int x = 0; bits != 0 && x < kSide; ++x) {
+      if ((bits >> x & 1U) == 0) continue;
+      const std::size_t cell = index(column * kSide + x, row * kSide + y);
+      if (hits_[cell] == 0) active_.push_back(static_cast<std::uint32_t>(cell));
+      hits_[cell] = std::max(hits_[cell], kRestored);
+      seen_[cell] = now();
+      means_[cell] = {};
+      if (field_) field_->occupy(column * kSide + x, row * kSide + y);
+    }
+  }
+}
+
+void LocalMap::survey(int tiles, BuildingMemory& memory) {
+  constexpr int kInner = kMapTiles - 2;
+  for (int k = 0; k < tiles; ++k, next_survey_ = (next_survey_ + 1) % (kInner * kInner)) {
+    const int x = 1 + next_survey_ % kInner;
+    const int y = 1 + next_survey_ / kInner;
+    BuildingMemory::Tile& tile = memory.get(tile_column() + x, tile_row() + y);
+    for (int row = 0; row < BuildingMemory::kCoarseSide; ++row) {
+      for (int column = 0; column < BuildingMemory::kCoarseSide; ++column) {
+        std::int16_t most = 0;
+        for (int v = 0; v < kFinePerCoarse; ++v) {
+          const std::int16_t* const from =
+              field_->from(x * BuildingMemory::kFineSide + column * kFinePerCoarse,
+                           y * BuildingMemory::kFineSide + row * kFinePerCoarse + v);
+          for (int u = 0; u < kFinePerCoarse; ++u) most = std::max(most, from[u]);
+        }
+        tile.clearance[static_cast<std::size_t>(row * BuildingMemory::kCoarseSide + column)] =
+            static_cast<std::uint8_t>(most / kMmPerCm);
+      }
+    }
+  }
+}
+
+}  // namespace algo

@@ -1,0 +1,28 @@
+// algo/full_strip/step_cost.hpp: what a metre of way costs.
+#pragma once
+
+#include <algorithm>
+
+namespace algo {
+
+/// One cost that rises towards things, without a step: 1 where there is room, more from 0.7 m of
+/// clearance down, and much more where the hull barely fits.
+struct StepCost {
+  double half_width = 0;  // [m] of the hull
+  double least = 0;       // [m] clearance below which there is no way
+
+  static constexpr double kComfort = 0.7;  // [m] clearance above which more is not worth a detour
+  static constexpr double kEasy = 0.08;    // [m] beside the hull; less needs care
+  static constexpr double kTight = 12;     // [m per m] more where nothing is left beside the hull
+  static constexpr double kUnseen = 1.3;   // times the cost where no beam has been
+  static constexpr double kDoubt = 30;     // [m per m] more where something may stand
+
+  /// [m per m] with clearance `d` [m].
+  double of(double d) const {
+    const double lacking = std::max(0.0, kComfort - d) / 0.5;
+    const double tight = std::clamp((kEasy - (d - half_width)) / kEasy, 0.0, 1.0);
+    return 1 + 3 * lacking * lacking + kTight * tight * tight;
+  }
+};
+
+}  // namespace algo

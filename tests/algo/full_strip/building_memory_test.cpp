@@ -1,0 +1,139 @@
+// tests/algo/full_strip/building_memory_test.cpp: what is kept beyond the map, and comes back.
+#include "algo/full_strip/building_memory.hpp"
+
+#include <numbers>
+
+#include "tests/algo/full_strip/walls.hpp"
+#include <gtest/gtest.h>
+
+#include "algo/full_strip/mixed_beam.hpp"
+
+namespace {
+
+using algo::BuildingMemory;
+using algo::LocalMap;
+using algo::Vec2;
+
+/// Half a turn ahead, nothing within range.
+algo::LaserScan free_sweep() {
+  algo::LaserScan scan;
+  scan.angle_min = -std::numbers::pi / 2;
+  scan.angle_increment = std::numbers::pi / 360;
+  scan.range_max = 8;
+  scan.resize(361);
+  for (std::size_t i = 0; i < scan.size(); ++i) scan.set_free(i);
+  return scan;
+}
+
+BuildingMemory::Cell cell(double x, double y) {
+  return BuildingMemory::cell_of({x, y});
+}
+
+TEST(BuildingMemory, CountsTheBeamsThatCrossACell) {
+  BuildingMemory memory;
+  algo::LaserScan scan = free_sweep();
+  scan.set_ok(180, 4.05);  // straight ahead
+  for (int k = 0; k < 10; ++k) memory.look(scan, {0, 0.1, 0});
+  EXPECT_TRUE(memory.seen(cell(3.5, 0.1)));
+  EXPECT_TRUE(memory.seen(cell(5, 3)));
+  EXPECT_FALSE(memory.seen(cell(-1, 0)));
+  EXPECT_FALSE(memory.seen(cell(8.5, 0)));
+  EXPECT_GT(memory.crossings(cell(1, 0.1)), memory.crossings(cell(6, 2)));
+}
+
+/// Along a wall beside the way at 0.5 m, through a door in it, and on along the wall behind it.
+TEST(MixedBeam, AnEndBetweenAnEdgeAndTheWallBehindItIsMixed) {
+  algo::LaserScan scan = free_sweep();
+  for (std::size_t i = 170; i < 176; ++i) scan.set_ok(i, 4.2);
+  for (std::size_t i = 178; i < 185; ++i) scan.set_ok(i, 5.3);
+  for (const double share : {0.3, 0.5, 0.7}) {
+    scan.set_ok(176, 4.2 + share * 1.1);
+    scan.set_ok(177, 4.2 + share * 1.1);  // doubled
+    EXPECT_TRUE(algo::is_mixed(scan, 176)) << share;
+    EXPECT_TRUE(algo::is_mixed(scan, 177)) << share;
+    EXPECT_FALSE(algo::is_mixed(scan, 173));
+    EXPECT_FALSE(algo::is_mixed(scan, 182));
+  }
+}
+
+TEST(MixedBeam, ALegBeforeAWallIsNotMixed) {
+  algo::LaserScan scan = free_sweep();
+  for (std::size_t i = 0; i < scan.size(); ++i) scan.set_ok(i, 5);
+  scan.set_ok(180, 4.2);
+  for (std::size_t i = 0; i < scan.size(); ++i) EXPECT_FALSE(algo::is_mixed(scan, i)) << i;
+}
+
+TEST(MixedBeam, AWallAcrossTheBeamsIsNotMixed) {
+  algo::LaserScan scan = free_sweep();
+  for (std::size_t i = 60; i < 300; ++i) scan.set_ok(i, 2 / std::cos(scan.angle(i)));
+  for (std::size_t i = 0; i < scan.size(); ++i) EXPECT_FALSE(algo::is_mixed(scan, i)) << i;
+}
+
+TEST(BuildingMemory, AMixedBeamRaisesDoubtsThatCrossingBeamsDispel) {
+  BuildingMemory memory;
+  algo::LaserScan scan = free_sweep();
+  for (std::size_t i = 174; i < 180; ++i) scan.set_ok(i, 3);
+  for (std::size_t i = 182; i < 188; ++i) scan.set_ok(i, 4.2);
+  scan.set_ok(180, 3.6);
+  scan.set_ok(181, 3.6);
+  for (int k = 0; k < 4; ++k) memory.look(scan, {0, 0.1, 0});
+  EXPECT_TRUE(memory.doubtful(cell(3.6, 0.1)));
+  EXPECT_FALSE(memory.doubtful(cell(3.0, -0.2)));
+  for (int k = 0; k < 40; ++k) memory.look(free_sweep(), {0, 0.1, 0});
+  EXPECT_FALSE(memory.doubtful(cell(3.6, 0.1)));
+}
+
+TEST(BuildingMemory, ATileFarAwayGivesItsPlaceToANearerOne) {
+  BuildingMemory memory;
+  memory.get(3, 4).seen[0] = 1;
+  EXPECT_NE(memory.find(3, 4), nullptr);
+  memory.get(3 + BuildingMemory::kTiles, 4);
+  EXPECT_EQ(memory.find(3, 4), nullptr);
+  EXPECT_EQ(memory.find(3 + BuildingMemory::kTiles, 4)->seen[0], 0);
+  memory.reset();
+  EXPECT_EQ(memory.find(3 + BuildingMemory::kTiles, 4), nullptr);
+}
+
+/// The robot drives away until a wall has left the map, and comes back.
+TEST(BuildingMemory, AWallIsOnTheMapAgainAfterAWayAround) {
+  LocalMap map;
+  BuildingMemory memory;
+  map.reset({0, 0});
+  walls::wall(map, {-3, 2}, {3, 2});
+  for (double x = 0; x < 30; x += 0.5) map.follow({x, 0}, &memory);
+  EXPECT_EQ(map.distance({0, 2}), LocalMap::kReach);  // it has left
+  for (double x = 30; x > 0; x -= 0.5) map.follow({x, 0}, &memory);
+  EXPECT_LT(map.distance({0, 2}), 0.06);
+  EXPECT_NEAR(map.distance({1, 1.5}), 0.5, 0.06);
+  EXPECT_NEAR(map.distance({3.5, 2}), 0.5, 0.06);
+}
+
+/// A wall that the robot saw vanish before it drove away does not come back.
+TEST(BuildingMemory, TheMapIsRightWhereItIsNewer) {
+  LocalMap map;
+  BuildingMemory memory;
+  map.reset({0, 0});
+  walls::wall(map, {-3, 2}, {3, 2});
+  const auto to_and_fro = [&] {
+    for (double x = 0; x < 30; x += 0.5) map.follow({x, 0}, &memory);
+    for (double x = 30; x > 0; x -= 0.5) map.follow({x, 0}, &memory);
+  };
+  to_and_fro();
+  map.erase_near({0, 2}, 4, [](const Vec2&) { return true; });
+  to_and_fro();
+  EXPECT_EQ(map.distance({0, 2}), LocalMap::kReach);
+}
+
+TEST(BuildingMemory, TheCoarseLayerHoldsTheLargestClearance) {
+  LocalMap map;
+  BuildingMemory memory;
+  map.reset({0, 0});
+  walls::wall(map, {-3, 2}, {3, 2});
+  map.survey(14 * 14, memory);
+  EXPECT_LE(memory.clearance(cell(0.1, 2.05)), 20);
+  EXPECT_NEAR(memory.clearance(cell(0.1, 1.5)), 60, 8);
+  EXPECT_EQ(memory.clearance(cell(0.1, -2)), 102);
+  EXPECT_EQ(memory.clearance(cell(40, 0)), BuildingMemory::kUnknown);
+}
+
+}  // namespace
