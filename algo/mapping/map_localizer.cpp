@@ -31,18 +31,23 @@ constexpr double kRidge = 0.75;               // share of the fit that holds bet
 constexpr double kMatchEvery = 0.1;  // [m] of way, a radian counting as a metre
 constexpr MatchPrior kPlacePrior{.position = 1, .heading = 2};
 constexpr double kLeastMatch = 0.35;  // share of the points
-constexpr double kSurprising = 9;     // squared deviations of a match
-constexpr double kOnMapWall = 0.15;   // [m]
-constexpr double kFitMemory = 2;      // [m]
+// What a map is bent by, and what has moved since, errs alike in many matches in a row.
+constexpr double kMapError = 0.05;      // [m]
+constexpr double kMapTurnError = 0.01;  // [rad]
+constexpr double kSurprising = 9;       // squared deviations of a match
+constexpr double kOnMapWall = 0.15;     // [m]
+constexpr double kFitMemory = 2;        // [m]
 
-constexpr double kLostFit = 0.4;            // a place whose scans fit less is given up
-constexpr double kSureFit = 0.7;            // of a place that is believed,
-constexpr double kStillFit = 0.55;          // and still believed later
-constexpr double kAtOnce = 0.25;            // less fit than the best place has: given up when found
-constexpr double kLag = 3;                  // [m] of merit behind the best place
-constexpr double kSamePlace = 0.5;          // [m]
-constexpr double kSameHeading = 0.3;        // [rad]
-constexpr double kMostDeviation = 0.5;      // [m] of a robot that counts as located
+constexpr double kLostFit = 0.4;        // a place whose scans fit less is given up
+constexpr double kSureFit = 0.7;        // of a place that is believed,
+constexpr double kStillFit = 0.55;      // and still believed later
+constexpr double kAtOnce = 0.25;        // less fit than the best place has: given up when found
+constexpr double kLag = 3;              // [m] of merit behind the best place
+constexpr double kSamePlace = 0.5;      // [m]
+constexpr double kSameHeading = 0.3;    // [rad]
+constexpr double kMostDeviation = 0.5;  // [m] of a robot that is located,
+constexpr double kStillDeviation =
+    2.5;  // [m] and that still is: along a plain corridor it drives on
 constexpr double kMostTurnDeviation = 0.1;  // [rad]
 constexpr double kSearchAgain = 1;          // [m] of way after a search in vain,
 constexpr int kSearchAgainScans = 400;      // or so many scans
@@ -101,7 +106,8 @@ void PlaceFilter::take(const ScanMatch& match, double fit) {
   way_ = 0;
   matched_ = true;
   if (match.share < kLeastMatch) return;
-  const Eigen::Matrix3d information = match_information(match);
+  const Eigen::Matrix3d information =
+      weakened(match_information(match), {kMapError, kMapError, kMapTurnError});
   const Vec3 off(match.pose_W.x - pose_M_.x,
                  match.pose_W.y - pose_M_.y,
                  wrap_angle(match.pose_W.heading - pose_M_.heading));
@@ -201,6 +207,7 @@ void MapLocalizer::begin_places() {
   poor_ = 0;
   compared_ = false;
   believed_ = false;
+  located_ = false;
 }
 
 void MapLocalizer::take_places(const Pose2& since) {
@@ -297,6 +304,9 @@ void MapLocalizer::drop_worse() {
     wanted_ = given_ || !first;
   } else if (filters_.size() == 1) {
     believed_ = poor_ < kPoorHeld && filters_.front().fit() >= (believed_ ? kStillFit : kSureFit);
+    const double most = located_ ? kStillDeviation : kMostDeviation;
+    const double turn = std::sqrt(filters_.front().covariance()(2, 2));
+    located_ = believed_ && deviation() <= most && turn <= kMostTurnDeviation;
   }
 }
 
@@ -314,9 +324,7 @@ MapFix MapLocalizer::fix() const {
   const bool fresh = std::ranges::any_of(filters_, [](const auto& f) { return !f.matched(); });
   if (fresh) return MapFix::Searching;
   if (filters_.size() > 1) return MapFix::NotUnique;
-  const double turn = std::sqrt(best().covariance()(2, 2));
-  const bool sure = believed_ && deviation() <= kMostDeviation && turn <= kMostTurnDeviation;
-  return sure ? MapFix::Located : MapFix::Unsure;
+  return located_ ? MapFix::Located : MapFix::Unsure;
 }
 
 std::string MapLocalizer::sentence() const {

@@ -112,7 +112,8 @@ class MapLocalizer {
   std::optional<Pose2> given_M_{};
   bool given_ = false;     // the places lie about a pose that somebody gave
   bool compared_ = false;  // the places found
-  bool believed_ = false;  // the only place fits
+  bool believed_ = false;  // the only place fits,
+  bool located_ = false;   // and is known well enough to drive by it
   bool searching_ = false;
   bool wanted_ = true;  // a search
   double idle_ = 0;     // [m] way since a search that found nothing of use

@@ -83,13 +83,16 @@ Eigen::Matrix3d match_information(const ScanMatch& match) {
   return back.asDiagonal() * information * back.asDiagonal();
 }
 
-Eigen::Matrix3d loop_information(const Eigen::Matrix3d& information) {
-  const Eigen::Matrix3d bend =
-      Vec3(kBendWay * kBendWay, kBendWay * kBendWay, kBendTurn * kBendTurn).asDiagonal();
+Eigen::Matrix3d weakened(const Eigen::Matrix3d& information, const Vec3& errors) {
+  const Eigen::Matrix3d more = errors.cwiseAbs2().asDiagonal();
   // The inverse of the sum of both covariances, also where the match tells nothing.
   const Eigen::Matrix3d weaker =
-      (Eigen::Matrix3d::Identity() + information * bend).inverse() * information;
+      (Eigen::Matrix3d::Identity() + information * more).inverse() * information;
   return (weaker + weaker.transpose()) / 2;
+}
+
+Eigen::Matrix3d loop_information(const Eigen::Matrix3d& information) {
+  return weakened(information, {kBendWay, kBendWay, kBendTurn});
 }
 
 bool complete(const Eigen::Matrix3d& information) {

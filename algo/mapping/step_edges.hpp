@@ -35,6 +35,8 @@ class OdometryChain {
 /// would hold the pose where the odometry put it.
 Eigen::Matrix3d match_information(const ScanMatch& match);
 
+/// `information` of a match, if the map itself is off by `errors` (deviations [m], [m], [rad]).
+Eigen::Matrix3d weakened(const Eigen::Matrix3d& information, const Vec3& errors);
 /// `information` of a match between submaps, which are bent a little themselves. A loop has to be
 /// weaker than the steps along the way, or a false one would break these and not itself.
 Eigen::Matrix3d loop_information(const Eigen::Matrix3d& information);

@@ -87,6 +87,7 @@ json to_json(const algo::MapPose& at) {
   return {{"state", algo::name(at.fix)},
           {"why", algo::sentence(at.fix)},
           {"places", at.places},
+          {"epoch", at.epoch},
           {"xx", at.xx},
           {"xy", at.xy},
           {"yy", at.yy},

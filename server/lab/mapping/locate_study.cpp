@@ -56,8 +56,9 @@ struct Judged {
     if (!is_located) return;
     located += 1;
     worst = std::max(worst, off.norm());
-    if (off.norm() > kFalsePose) false_time += period;
-    if (off.norm() <= 3 * std::sqrt(variance)) within += 1;
+    const bool told = off.norm() <= 3 * std::sqrt(variance);
+    if (off.norm() > kFalsePose && !told) false_time += period;
+    if (told) within += 1;
   }
 };
 

@@ -47,7 +47,7 @@ struct LocateRun {
   double goal_off = 0;    // [m] between the robot's true place and the goal, at the end
   double worst_off = 0;   // [m] of the pose, while located
   double located = 0;     // share of the time
-  double false_time = 0;  // [s] located, but more than 0.5 m off
+  double false_time = 0;  // [s] located, but more than 0.5 m and 3 deviations off
   double within_3 = 1;    // share of the time located with an error of at most 3 deviations
   /// Of a passenger of the same drive, who has the same map and scans and knows no start.
   double passenger_found = -1;        // [m] of way until located; below 0: never

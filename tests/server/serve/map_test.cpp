@@ -1,8 +1,9 @@
-// tests/server/serve/map_test.cpp: the pose on a known map over REST.
+// tests/server/serve/map_test.cpp: the pose on a known map over REST and Foxglove.
 #include <string>
 
 #include "tests/server/map_room.hpp"
 #include "tests/server/serve/app_fixture.hpp"
+#include "tests/server/serve/viewer.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -44,6 +45,23 @@ TEST_F(MapTest, APoseIsGivenAndGoalsAreRefusedUntilItIsFound) {
   ASSERT_EQ(post("/session/control", {{"action", "play"}}), 200);
   ASSERT_TRUE(eventually([&] { return located(); }));
   EXPECT_EQ(ask("PUT", "/session/goal", R"({"x":3,"y":2})").status, 200);
+}
+
+TEST_F(MapTest, FoxglovesInitialPoseIsTaken) {
+  ASSERT_TRUE(eventually([&] { return located(); }));
+  EXPECT_EQ(get("/session")["fix"]["epoch"], 1);
+  const Viewer viewer(port_);
+  const json channel = {{"id", 9},
+                        {"topic", "/initialpose"},
+                        {"encoding", "json"},
+                        {"schemaName", "geometry_msgs/PoseWithCovarianceStamped"}};
+  viewer.client.send_text(json({{"op", "advertise"}, {"channels", {channel}}}).dump());
+  const json position = {{"x", 2}, {"y", 2}, {"z", 0}};
+  const json orientation = {{"x", 0}, {"y", 0}, {"z", 0.1}, {"w", 0.995}};
+  const json pose = {{"position", position}, {"orientation", orientation}};
+  const json message = {{"pose", {{"pose", pose}, {"covariance", json::array()}}}};
+  viewer.client.send_binary(foxglove::client_message(9, message.dump()));
+  EXPECT_TRUE(eventually([&] { return located() && get("/session")["fix"]["epoch"] == 2; }));
 }
 
 TEST_F(MapTest, AResetKeepsTheMapAndAnotherWorldHasNone) {
