@@ -81,7 +81,7 @@ test("a robot that is lost says so and refuses goals; a drag tells it where it i
   await p.close();
 });
 
-test("the pose is given by numbers, the map is searched again, and both layers have a switch", { timeout: 240_000 }, async () => {
+test("the pose is given by numbers, the map is searched again, and its layer has a switch", { timeout: 240_000 }, async () => {
   await reset();
   await fix("lost again", "not_unique");
   const p = await open(browser, server.base, { reads: true });
@@ -96,19 +96,16 @@ test("the pose is given by numbers, the map is searched again, and both layers h
   await fix("the map is searched", "not_unique");
 
   if ((await p.get("layers").getAttribute("aria-expanded")) !== "true") await p.get("layers").click();
-  const places = await p.pixels(5, -0.03); // the wall on the map; the obstacle above it is as thick
+  const places = await p.pixels(1, 5); // floor of the map, behind the robot
   const colour = () => p.page.evaluate(({ x, y }) => {
     const canvas = document.querySelector('[data-testid="scene"]');
     const box = canvas.getBoundingClientRect();
     const k = canvas.width / box.width;
     return [...canvas.getContext("2d").getImageData((x - box.x) * k, (y - box.y) * k, 1, 1).data].join();
   }, places);
-  const floor = await p.pixels(5, 3);
-  Object.assign(places, floor);
   const shown = await colour();
   await p.page.getByRole("switch", { name: "Known map" }).or(p.page.getByLabel("Known map")).first().click();
   await until("the map is gone", 10, colour, (c) => c !== shown);
-  await p.page.getByLabel("Pose on the map, 95 %").first().waitFor();
   await p.shot("map-layers");
   await p.close();
 });
