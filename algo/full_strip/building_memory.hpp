@@ -29,12 +29,14 @@ class BuildingMemory {
   static constexpr double kEdge = kTiles * kTileEdge;     // [m]
   static constexpr std::uint8_t kUnknown = 255;           // clearance of a cell
 
+  static constexpr std::size_t kCells = std::size_t{kCoarseSide} * kCoarseSide;  // of a tile
+
   struct Tile {
     std::array<std::uint32_t, kFineSide> occupied{};  // a bit per cell, a number per row
     /// [cm] The largest distance to an obstacle within each coarse cell, or kUnknown.
-    std::array<std::uint8_t, kCoarseSide * kCoarseSide> clearance{};
-    std::array<std::uint8_t, kCoarseSide * kCoarseSide> seen{};  // beams that have crossed it
-    std::array<std::uint8_t, kCoarseSide * kCoarseSide> doubts{};
+    std::array<std::uint8_t, kCells> clearance{};
+    std::array<std::uint8_t, kCells> seen{};  // beams that have crossed it
+    std::array<std::uint8_t, kCells> doubts{};
     std::int16_t column = 0, row = 0;  // its place: the plane's tiles share memory periodically
     bool used = false;
   };
@@ -80,8 +82,8 @@ class BuildingMemory {
 
   static int tile_of(int coarse) { return coarse >> 3; }
   static std::size_t within(Cell c) {
-    return static_cast<std::size_t>((c.row & (kCoarseSide - 1)) * kCoarseSide +
-                                    (c.column & (kCoarseSide - 1)));
+    return static_cast<std::size_t>(c.row & (kCoarseSide - 1)) * kCoarseSide +
+           static_cast<std::size_t>(c.column & (kCoarseSide - 1));
   }
   static Cell cell_of(const Vec2& p_W) {
     return {static_cast<int>(std::floor(p_W.x() / kCoarse)),

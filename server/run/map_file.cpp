@@ -114,14 +114,15 @@ struct Raster {
     const auto tiles = map.tiles();
     if (tiles.empty()) return;
     constexpr int kSide = algo::OccupancyMap::kTileSide;
+    constexpr std::size_t kEdge = kSide;
     algo::OccupancyMap::Index low = tiles.front();
     algo::OccupancyMap::Index high = tiles.front();
     for (const auto& tile : tiles) {
       low = {std::min(low.i, tile.i), std::min(low.j, tile.j)};
       high = {std::max(high.i, tile.i), std::max(high.j, tile.j)};
     }
-    width = static_cast<std::size_t>((high.i - low.i + 1) * kSide);
-    height = static_cast<std::size_t>((high.j - low.j + 1) * kSide);
+    width = static_cast<std::size_t>(high.i - low.i + 1) * kEdge;
+    height = static_cast<std::size_t>(high.j - low.j + 1) * kEdge;
     corner_M = map.cell_edge() * kSide * algo::Vec2(low.i, low.j);
     cells.resize(width * height, MapCell::Unknown);
     map.each_cell([&](const auto& cell, const auto& tally) {

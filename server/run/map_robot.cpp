@@ -54,8 +54,8 @@ void MapRobot::place(const algo::SetInitialPose& at) {
 void MapRobot::locate(algo::Observation& observation) {
   trail_.follow(observation.odometry.pose, observation.stamp);
   if (const algo::LaserScan* scan = algo::front_scan(observation)) {
-    const algo::Pose2 R_in_scanner = algo::pose_step(scan->mount_R, {});
-    scanned_ = algo::compose(trail_.map(*scan), R_in_scanner);
+    const algo::Pose2 robot_in_scanner = algo::pose_step(scan->mount_R, {});
+    scanned_ = algo::compose(trail_.map(*scan), robot_in_scanner);
     localizer_.take(*scan, *scanned_);
   }
   correct(observation);
