@@ -138,7 +138,7 @@ TEST_F(AppTest, EveryReadAnswersWithTheKeysItsSchemaRequires) {
     if (const auto at = target.find("{session}"); at != std::string::npos) {
       target.replace(at, 9, "main");
     }
-    if (target == "/session/map") continue;  // this robot knows none: see MapTest
+    if (target.ends_with("/map")) continue;  // this robot knows none: see MapTest
     if (target == "/view_link") continue;    // there is none where no token is asked for
     if (target.ends_with("/experiments/" + experiment + "/events"))
       continue;  // it does not end; the page's tests read it
