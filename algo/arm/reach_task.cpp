@@ -159,7 +159,7 @@ bool ReachTask::go_on(const BodyJoints& now, std::span<const Solid> solids) {
 /// Along the present leg.
 BodyCommand ReachTask::step(const BodyJoints& now, std::span<const Solid> near, double dt) {
   if (legs_[leg_].kind != ReachLeg::Kind::Follow) return follower_.update(now, near, dt);
-  const BodyCommand along = path_.update(now, near, dt);
+  BodyCommand along = path_.update(now, near, dt);
   if (along.state == FollowState::Arrived) return along;
   BodyCommand command = follower_.kept_clear(now, along, near, true);
   if (along.state == FollowState::Waits) command.state = FollowState::Waits;

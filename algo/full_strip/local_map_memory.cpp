@@ -95,7 +95,7 @@ void LocalMap::survey(int tiles, BuildingMemory& memory) {
                            y * BuildingMemory::kFineSide + row * kFinePerCoarse + v);
           for (int u = 0; u < kFinePerCoarse; ++u) most = std::max(most, from[u]);
         }
-        tile.clearance[static_cast<std::size_t>(row * BuildingMemory::kCoarseSide + column)] =
+        tile.clearance[BuildingMemory::within({column, row})] =
             static_cast<std::uint8_t>(most / kMmPerCm);
       }
     }

@@ -77,7 +77,8 @@ Planner::Id Planner::id_at(const Vec2& p_W) const {
 
 Vec2 Planner::position_W(Id id) const {
   if (!is_fine(id)) return BuildingMemory::middle_W(cell_of(id));
-  return corner_W_ + Vec2((id % kFine + 0.5) * kStep, (id / kFine + 0.5) * kStep);
+  const Id row = id / kFine;
+  return corner_W_ + Vec2((id % kFine + 0.5) * kStep, (row + 0.5) * kStep);
 }
 
 /// The point, emptied if an earlier search wrote it.

@@ -149,10 +149,11 @@ void StripRoute::start_search(const PlanWorld& world, const Vec2& here_W, double
 /// a door has closed. Behind a wall that is seen for the first time, nothing was seen before.
 void StripRoute::note_closure(const PlanWorld& world) {
   if (broken_at_ < 0 || strip_.empty() || watch_) return;
-  for (double s = broken_at_ - kSeenBefore; s <= broken_at_ + kSeenBehind;
-       s += NodeStrip::kSpacing) {
+  double s = broken_at_ - kSeenBefore;
+  while (s <= broken_at_ + kSeenBehind) {
     const Vec2 at_W = strip_.at(std::max(0.0, s));
     if (world.memory.crossings(BuildingMemory::cell_of(at_W)) < kLongSeen) return;
+    s += NodeStrip::kSpacing;
   }
   closure_ = Watch{strip_.at(std::max(0.0, broken_at_ - kWatchFrom)), strip_.at(broken_at_), {}};
 }
