@@ -136,7 +136,7 @@ bool LoopCloser::verify(Loop& loop) {
       ++common;
     } else if (earlier.wall_within(p, kNearWall)) {
       ++common;
-    } else if (earlier.free(p)) {
+    } else if (earlier.is_free(p)) {
       ++contradicted;
       ++common;
     }

@@ -67,7 +67,7 @@ void Submap::keep_free(const OccupancyMap& map) {
   for (std::size_t k = 0; k < seen.size(); ++k) free_[k] = seen[k] >= kFreeCells;
 }
 
-bool Submap::free(const Vec2& p) const {
+bool Submap::is_free(const Vec2& p) const {
   const int column = static_cast<int>(std::floor(p.x() / block_)) - low_.i;
   const int row = static_cast<int>(std::floor(p.y() / block_)) - low_.j;
   if (column < 0 || row < 0 || column >= free_columns_ || row >= free_rows_) return false;

@@ -43,7 +43,7 @@ class Submap {
   }
   bool wall_within(const Vec2& p, double reach) const;
   /// Beams went through here, and nothing stood near.
-  bool free(const Vec2& p) const;
+  bool is_free(const Vec2& p) const;
 
   std::span<const Eigen::Vector2f> walls() const { return walls_; }
   /// Walls thinned to `spacing` [m], about evenly.
