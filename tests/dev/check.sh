@@ -60,10 +60,10 @@ verb_fmt() {
 # ---- sanitizers and fuzzing -----------------------------------------------------------------------
 
 # Long drives and heavy loads, whose code shorter tests run as well. A sanitizer would make minutes of each.
-long_tests=(AppTest.ABatchOfTenThousand\* ArmInverse.EveryBranch\* ArmStudy.\* BodyFollower.Passes\* BuildingStudy.RunsTheChosen\*
+long_tests=(AppTest.ABatchOfTenThousand\* ArmRun.APersonWho\* ArmInverse.EveryBranch\* ArmStudy.\* BodyFollower.Passes\* BuildingStudy.RunsTheChosen\*
   BodyStrip.TheArmYields\* Compare.TheBlindOne\* Determinism.SeveralRobots\*
   CrowdCrossing.{TheSame,SomebodyWho}\* FleetRobot.{EachRobot,SoItDoes}\* GroundCourses.ARobotClimbs\* GroundDrive.RefusesSteps\* MapData.\*
-  MasudaStudy.{BandsCanFail,DocumentsName,DownwardSlopes,HasTheLines,PrintedRules}\*
+  LocateStudy.\* MasudaStudy.{BandsCanFail,DocumentsName,DownwardSlopes,HasTheLines,PrintedRules}\*
   FilterStudy.RepeatsExactly\* Operator.IsTheSame\* Physics/RecordedSwap.\* RunListLoadTest.\* RunQueueTest.WaitingWorlds\*
   SlopeStudy.TheGuardKeeps\* TightPlaces.\* Turnover.BeginsWhere\*)
 
