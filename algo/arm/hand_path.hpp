@@ -14,8 +14,8 @@ struct HandPathRules {
   double speed = 0.10;           // [m/s] of the hand along its path
   double correction = 2.0;       // [1/s] by which the hand gets back onto it
   double lag = 0.02;             // [m] the path waits for a hand that is farther behind
-  double reach = 0.35;           // [m] what moves and is farther from a part pushes nothing,
-  double standing_reach = 0.05;  // [m] and what stands: the plan keeps clear of it
+  double reach = 0.35;           // [m] a moving solid pushes the parts nearer to it than this,
+  double standing_reach = 0.05;  // [m] a standing one these: the plan keeps clear of it
   double push = 4.0;             // [1/s] by which a part yields
   double own_reach = 0.03;       // [m] the same of the arm and its own robot
   double back = 1.0;             // [1/s] by which base and joints get back to the plan

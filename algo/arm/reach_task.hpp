@@ -71,7 +71,7 @@ class ReachTask {
   enum class Stage : std::uint8_t { There, Path, Back };
   /// What is asked for now: the way to the goal of the hand or of the base.
   ReachQuestion::Kind way() const;
-  /// Leaves out what moves: it will be elsewhere.
+  /// The question leaves out moving solids: they will be elsewhere.
   void ask(ReachQuestion::Kind kind, const BodyJoints& now, std::span<const Solid> solids);
   /// Asks for the whole way again, with other places first, or gives up.
   void ask_anew(const BodyJoints& now, std::span<const Solid> solids);

@@ -12,6 +12,8 @@ struct StepCost {
   double least = 0;       // [m] clearance below which there is no way
 
   static constexpr double kComfort = 0.7;  // [m] clearance above which more is not worth a detour
+  static constexpr double kFull = 0.5;     // [m] less than kComfort: kCrowded more,
+  static constexpr double kCrowded = 3;    // [m per m]
   static constexpr double kEasy = 0.08;    // [m] beside the hull; less needs care
   static constexpr double kTight = 12;     // [m per m] more where nothing is left beside the hull
   static constexpr double kUnseen = 1.3;   // times the cost where no beam has been
@@ -19,9 +21,9 @@ struct StepCost {
 
   /// [m per m] with clearance `d` [m].
   double of(double d) const {
-    const double lacking = std::max(0.0, kComfort - d) / 0.5;
+    const double lacking = std::max(0.0, kComfort - d) / kFull;
     const double tight = std::clamp((kEasy - (d - half_width)) / kEasy, 0.0, 1.0);
-    return 1 + 3 * lacking * lacking + kTight * tight * tight;
+    return 1 + kCrowded * lacking * lacking + kTight * tight * tight;
   }
 };
 

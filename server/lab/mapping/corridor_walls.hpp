@@ -9,7 +9,7 @@
 
 namespace server::mapping {
 
-/// What stands in a building. Doors and furniture may be otherwise on another day.
+/// The kind of a piece of a building. Doors and furniture may stand elsewhere on another day.
 struct Piece {
   algo::Obstacle obstacle{};
   bool movable = false;

@@ -44,7 +44,7 @@ struct HandCourse {
     for (const Vec3& way : ways) points_W.push_back(from_W + way);
     return plan_hand_path(body, start, points_W, base_stays, solids).path;
   }
-  /// [m] Least, of the configurations of `plan`, to what stands.
+  /// [m] Least, of the configurations of `plan`, to the standing solids.
   double planned_room(const std::vector<BodyJoints>& plan) const {
     double room = 1e9;
     for (const BodyJoints& q : plan) {
