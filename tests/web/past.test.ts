@@ -14,18 +14,19 @@ const settled = () => new Promise((resolve) => setImmediate(resolve));
 function watching() {
   const timers = hand_wound();
   const kept = globalThis.fetch;
-  const server = { asked: [] as string[], down: false };
+  const server = { asked: [] as string[], down: false, tick: 20, recorded_to: Infinity };
   const spec = (tick: number): FrameSpec => ({ tick, pose: [tick / 100, 0, 0],
     requests: tick === 15 ? [add_cylinder(7, 1, 1, 0.2)] : tick === 130 ? [add_cylinder(8, 2, 1, 0.2)] : [] });
   globalThis.fetch = (async (path: string) => {
     server.asked.push(path.replace("/api/v1/runs/1/", ""));
     if (server.down) throw new Error("down");
+    if (path.endsWith("/session")) return new Response(JSON.stringify({ tick: server.tick }));
     const [from, limit] = [...path.matchAll(/=(\d+)/g)].map((m) => Number(m[1]));
     if (path.includes("/ticks")) {
       const items = Array.from({ length: 5 }, (_, i) => ({ t: (from + i) * 0.026, tick: from + i, x: (from + i) / 100, y: 0 }));
       return new Response(JSON.stringify({ items, next: null }));
     }
-    const found = [from, 15, 130].filter((t, i) => t >= from && t < from + limit && (i === 0 || t !== from));
+    const found = [from, 15, 130].filter((t) => t <= server.recorded_to).filter((t, i) => t >= from && t < from + limit && (i === 0 || t !== from));
     return new Response(framed(found.map((t) => frame_bytes(spec(t)))) as BodyInit);
   }) as typeof fetch;
   const scene = new_scene();
@@ -107,5 +108,24 @@ test("without a record, or a server, it waits for the next missed tick", async (
   const asked = w.server.asked.length;
   await w.later(10_000);
   assert.equal(w.server.asked.length, asked, "another run asks for nothing of this one");
+  w.end();
+});
+
+test("a paused run whose record comes late is shown once the record holds it", async () => {
+  const w = watching();
+  Object.assign(globalThis, { location: { search: "" } });
+  w.server.recorded_to = -1;
+  void w.past.fetch_newest();
+  await w.later(0);
+  assert.equal(w.scene.frame, null);
+  await w.later(600);
+  assert.equal(w.scene.frame, null);
+  w.server.recorded_to = 20;
+  await w.later(600);
+  assert.equal(w.scene.frame?.tick, 15, "the newest that the record holds");
+  const asked = w.server.asked.length;
+  await w.later(600);
+  assert.equal(w.server.asked.length, asked, "asks no more");
+  Reflect.deleteProperty(globalThis, "location");
   w.end();
 });

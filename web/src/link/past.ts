@@ -12,6 +12,8 @@ import { fetch_all, split_frames, stored_frames } from "./stored";
 
 const kLate = 40;        // [ticks] from which a page fetches the rows that it missed
 const kRecentTicks = 60; // ticks back in which the newest scan and words are found
+const kNewestMs = 600;   // between the tries to read a paused run's last frame, which a busy record gets late
+const kNewestTries = 20;
 const kEventsMs = 2500;  // after which the events of missed ticks are fetched: they are recorded then
 const kEventTicks = 20_000; // of one request
 
@@ -76,8 +78,8 @@ export class Past {
     this.timer_ = setTimeout(() => void this.catch_up(), kEventsMs);
   }
 
-  /** A paused run sends no frames: without one, the page shows the last frame of the record. */
-  async fetch_newest(): Promise<void> {
+  /** A paused run sends no frames: without one, the page shows the last frame of the record, once that holds it. */
+  async fetch_newest(tries = kNewestTries): Promise<void> {
     const { run } = this.scene_;
     if (run === null || run <= 0 || this.scene_.frame) return;
     try {
@@ -89,8 +91,9 @@ export class Past {
         fold_frame(this.scene_, frame);
         this.see(frame);
       }
+      if (!this.scene_.frame && tries > 1) setTimeout(() => void this.fetch_newest(tries - 1), kNewestMs);
       this.changed_();
-      if (this.wants_filtered) await this.fetch_filtered();
+      if (this.scene_.frame && this.wants_filtered) await this.fetch_filtered();
     } catch {
       // The run has no record: the page shows it from the next frame on.
     }
