@@ -44,14 +44,10 @@ async function step(p, base, ticks) {
   await control(base, { action: "step", ticks });
   const session = await until(`${ticks} ticks after ${before}`, 40, () => json(base, "/session"), (s) => s.tick >= before + ticks);
   const known = await until("the record has it", 40, () => frame_of(wire, base, session.run.id, session.tick));
-  const drawn = (text) => near(seconds(text), session.stamp, 0.051);
-  await until("the page shows it", 20, () => p.get("time").innerText(), drawn);
-  await p.page.waitForTimeout(250); // the scene's next frame
+  await p.draws(session.tick);
+  await p.page.waitForTimeout(250); // the figures' next pulse
   return { session, ...known };
 }
-
-/** The seconds of the page's clock, "1:02.3". */
-const seconds = (text) => text.split(":").reduce((sum, part) => 60 * sum + Number(part), 0);
 
 const card = (p) => p.page.locator('[data-testid="inspect"]');
 const row = (p, label) => card(p).locator(`[data-row="${label}"] dd`).innerText();

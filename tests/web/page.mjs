@@ -80,6 +80,10 @@ export async function open(browser, base, { size = desktop, theme = usual_theme,
       const box = await scene.boundingBox();
       return { x: box.x + box.width / 2 + (x - cx) * scale, y: box.y + box.height / 2 - (y - cy) * scale };
     },
+    /** Waits until the scene shows `tick`. */
+    async draws(tick) {
+      await page.waitForFunction(([e, t]) => e.dataset.tick === t, [await get("scene").elementHandle(), String(tick)], { timeout: 40_000 });
+    },
     async drag(from, to) {
       await page.mouse.move(from.x, from.y);
       await page.mouse.down();

@@ -100,7 +100,7 @@ export function SceneCanvas(props: CanvasProps): JSX.Element {
       if (lacks_ground(latest.current.scene())) void import("../draw/ground").then(request, () => undefined);
       if (lacks_arm(latest.current.scene())) void import("../arm/draw").then(request, () => undefined);
       drawing.around(() => draw_scene(g, view, colours, latest.current.scene(), { ...overlay, pointer }));
-      tell_view(canvas, view, moving);
+      tell_view(canvas, view, moving, latest.current.scene().frame?.tick);
       if (moving) request();
     };
     const request = () => {
@@ -216,9 +216,11 @@ export function scale_insets(view: HTMLElement): Insets {
   return insets;
 }
 
-/** Writes the view (centre x, y [m], scale [px/m]) on the element, so that a script can point at a
- * place of the world. Empty while the view moves. */
-function tell_view(canvas: HTMLCanvasElement, view: View, moving: boolean): void {
+/** Writes the view (centre x, y [m], scale [px/m]) and the drawn tick on the element, so that a script can point at a
+ * place of the world. The view is empty while it moves, the tick before the first frame. */
+function tell_view(canvas: HTMLCanvasElement, view: View, moving: boolean, tick: number | undefined): void {
   const now = moving ? "" : [view.x, view.y, view.scale].map((v) => v.toFixed(4)).join(" ");
   if (canvas.dataset.view !== now) canvas.dataset.view = now;
+  const drawn = tick === undefined ? "" : String(tick);
+  if (canvas.dataset.tick !== drawn) canvas.dataset.tick = drawn;
 }
