@@ -48,6 +48,8 @@ struct RobotSpec {
   double max_omega = 0;                 // [rad/s]
   double max_acceleration = 0;          // [m/s2]
   double max_angular_acceleration = 0;  // [rad/s2]
+  double max_jerk = 0;                  // [m/s3] of its commands, as the payload bears; 0: no limit
+  double max_angular_jerk = 0;          // [rad/s3]
   double command_delay = 0;             // [s] from a command's tick until it acts
   bool has_laser = true;   // has a scanner that looks ahead; if not, the sonar ring replaces it
   bool has_ring = false;   // has the sonars that the laws for driving by hand read

@@ -75,6 +75,8 @@ struct BaseLimits {
   double turn = 0.5;               // [rad/s]
   double acceleration = 0.3;       // [m/s2]
   double turn_acceleration = 1.0;  // [rad/s2]
+  double jerk = 0;                 // [m/s3] for the controller; 0: no limit
+  double turn_jerk = 0;            // [rad/s3]
 };
 
 /// [m/s2] the least deceleration of a wheel in an emergency stop.

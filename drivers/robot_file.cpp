@@ -148,6 +148,8 @@ void read_limits(Section in, RobotFile& robot) {
   robot.spec.raw_stick = in.flag_or("raw_stick", false);
   limits.turn_acceleration =
       in.number_or("turn_acceleration", limits.turn_acceleration, {0.01, 20});
+  limits.jerk = in.number_or("jerk", limits.jerk, {0, 1e4});
+  limits.turn_jerk = in.number_or("turn_jerk", limits.turn_jerk, {0, 1e4});
   in.done();
   const double braking = limits.speed * limits.speed / (2 * limits.acceleration);
   judge_way(in,
@@ -281,6 +283,8 @@ RobotFile read(const toml::table& table, const std::string& name) {
   spec.max_omega = robot.limits.turn;
   spec.max_acceleration = robot.limits.acceleration;
   spec.max_angular_acceleration = robot.limits.turn_acceleration;
+  spec.max_jerk = robot.limits.jerk;
+  spec.max_angular_jerk = robot.limits.turn_jerk;
   spec.drives = true;
   return robot;
 }

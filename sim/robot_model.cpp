@@ -155,6 +155,8 @@ algo::RobotSpec spec_of(const RobotModel& robot, double period) {
           .max_omega = robot.max_omega,
           .max_acceleration = robot.max_acceleration,
           .max_angular_acceleration = robot.max_angular_acceleration,
+          .max_jerk = robot.max_jerk,
+          .max_angular_jerk = robot.max_angular_jerk,
           .has_laser = robot.sensors.has_laser(),
           .has_ring = robot.sensors.has_ring(),
           .axle = axle_of(robot),

@@ -39,6 +39,8 @@ struct Machine {
   double max_omega = 1.0;               // [rad/s]
   double max_acceleration = 0.5;        // [m/s2]
   double max_angular_acceleration = 4;  // [rad/s2]
+  double max_jerk = 0;                  // [m/s3] for its controller; 0: no limit
+  double max_angular_jerk = 0;          // [rad/s3]
   double friction = 0.8;                // of the drive wheels on the floor
   double counts_per_turn = 40000;       // of a wheel's encoder
   /// If they were measured (`tautline climbs`).

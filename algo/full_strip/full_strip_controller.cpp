@@ -47,6 +47,7 @@ void FullStripController::reset(const Pose2& start_W) {
   giving_way_.reset();
   progress_.restart({0, 0}, 0);
   under_way_.reset();
+  course_ = {};
   state_ = kNone;
 }
 
@@ -56,6 +57,7 @@ void FullStripController::forget_attempts(const ControlInput& in) {
   recovery_.reset();
   giving_way_.reset();
   progress_.restart(in.odometry.pose.position(), in.stamp);
+  course_ = {.command = in.odometry.twist};
 }
 
 void FullStripController::prepare(const ControlInput& in, const Parameters& parameters) {
@@ -150,6 +152,7 @@ StageInput FullStripController::stage_input(const ControlInput& in) const {
   stage.strip = &route_.strip();
   stage.state = under_way_.state_when_acting({in.odometry.pose, in.odometry.twist}, limits_, in.dt);
   stage.limits = limits_;
+  stage.course = course_;
   stage.dt = in.dt;
   if (route_.broken_at() >= 0) stage.stop_at = std::max(0.0, route_.broken_at() - kStopShort);
   return stage;
@@ -163,8 +166,9 @@ Twist2 FullStripController::watch(const ControlInput& in, const Parameters& para
       in.odometry.pose, SetGoal{*route_.watched_W(), std::atan2(way_W.y(), way_W.x())}, parameters);
 }
 
-StripCommand FullStripController::drive(const ControlInput& in, const Parameters& parameters) {
-  const StageInput stage = stage_input(in);
+StripCommand FullStripController::drive(const StageInput& stage,
+                                        const ControlInput& in,
+                                        const Parameters& parameters) {
   const auto proven = [&](const Twist2& wanted) {
     return stage_.proven(stage, wanted, weighed_).value_or(Twist2{});
   };
@@ -196,6 +200,14 @@ StripCommand FullStripController::drive(const ControlInput& in, const Parameters
   return recover(stage, in);
 }
 
+/// The command for the base: as gentle as the robot's jerk asks, if that is safe too.
+Twist2 FullStripController::gentle(const StageInput& stage, const StripCommand& command) {
+  const Twist2 ramped = ramped_turn(course_, command.twist, limits_, stage.dt);
+  if (!is_hard(course_, ramped, limits_, stage.dt) || command.urgent) return ramped;
+  const Twist2 softer = eased(course_, ramped, limits_, stage.dt);
+  return stage_.proven(stage, softer, weighed_).value_or(ramped);
+}
+
 void FullStripController::update(const ControlInput& in,
                                  const Parameters& parameters,
                                  ControlOutput& out) {
@@ -207,6 +219,7 @@ void FullStripController::update(const ControlInput& in,
   if (!in.goal) {
     route_.clear_goal();
     state_ = kNone;
+    course_ = {};
     under_way_.send({});
     return;
   }
@@ -216,9 +229,12 @@ void FullStripController::update(const ControlInput& in,
                 in.odometry.pose.position(),
                 in.stamp);
   if (route_.doubts()) senses_.forget_doubtful();
-  const StripCommand command = drive(in, parameters);
+  const StageInput stage = stage_input(in);
+  const StripCommand command = drive(stage, in, parameters);
   state_ = command.state;
-  out.twist = command.twist;
+  out.twist = gentle(stage, command);
+  hard_ = is_hard(course_, out.twist, limits_, in.dt);
+  course_ = followed(course_, out.twist, in.dt);
   out.pass_W = weighed_.pass_W;
   under_way_.send(out.twist);
   report(in, out);

@@ -37,7 +37,8 @@ class FullStripController final : public Controller {
   void prepare(const ControlInput& in, const Parameters& parameters);
   void take_goal(const ControlInput& in);
   RouteSettings route_settings(const Parameters& parameters) const;
-  StripCommand drive(const ControlInput& in, const Parameters& parameters);
+  StripCommand drive(const StageInput& stage, const ControlInput& in, const Parameters& parameters);
+  Twist2 gentle(const StageInput& stage, const StripCommand& command);
   StageInput stage_input(const ControlInput& in) const;
   Twist2 watch(const ControlInput& in, const Parameters& parameters) const;
   bool ends_here(const ControlInput& in, const Parameters& parameters) const;
@@ -60,6 +61,8 @@ class FullStripController final : public Controller {
   Recovery recovery_{};
   ProgressWatch progress_{};
   CommandsUnderWay under_way_{};
+  CommandCourse course_{};
+  bool hard_ = false;  // the last command exceeds the robot's jerk
   State state_ = kNone;
   Weighing weighed_{};  // of this tick
 };

@@ -1,9 +1,15 @@
 // algo/full_strip/full_strip_parameters.hpp: the parameters of the full strip alone.
 #pragma once
 
+#include <string_view>
+
 #include "algo/parameters.hpp"
 
 namespace algo {
+
+/// The measure of a robot with a limit of its jerk: 1 where a command exceeds it, to keep clear of
+/// something or to give way.
+inline constexpr std::string_view kHardCommand = "strip.hard";
 
 inline constexpr ParameterInfo kNearestGoal{
     .name = "full_strip.nearest_goal",

@@ -37,6 +37,9 @@ void FullStripController::report(const ControlInput& in, ControlOutput& out) con
   if (in.grids) senses_.map().draw(in.odometry.pose.position(), kDrawn, map);
   Layer& plan = add_layer(out.layers, layers::kPlan);
   for (const Vec2& point : route_.path_W()) put(plan, point);
+  if (limits_.jerk > 0 || limits_.angular_jerk > 0) {
+    out.measures.push_back({kHardCommand, "", hard_ ? 1.0 : 0.0});
+  }
   show_weighed(out);
   show_strip(out);
   show_moving(out);

@@ -51,9 +51,9 @@ std::optional<StripCommand> GivingWay::next(const StageInput& stage,
   Twist2 reached = advanced(stage.state, twist, stage.limits, in.dt).twist;
   // A base that lags behind its commands would brake too late if it were asked step by step.
   if (std::abs(twist.v) < std::abs(reached.v)) reached.v = twist.v;
-  if (!search_.clear()) return StripCommand{reached, strip_state::kCornered};
-  return StripCommand{reached,
-                      twist.v > kDrivesOn ? strip_state::kFollowing : strip_state::kGivingWay};
+  if (!search_.clear()) return StripCommand{reached, strip_state::kCornered, true};
+  const bool drives_on = twist.v > kDrivesOn;
+  return StripCommand{reached, drives_on ? strip_state::kFollowing : strip_state::kGivingWay, true};
 }
 
 }  // namespace algo

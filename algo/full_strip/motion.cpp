@@ -142,8 +142,13 @@ bool HullCheck::covers(const Pose2& pose_W, const Vec2& point_W) const {
 }
 
 MotionLimits limits_of(const RobotSpec& spec) {
-  return {
-      spec.max_v, spec.max_omega, spec.max_acceleration, spec.max_angular_acceleration, spec.axle};
+  return {spec.max_v,
+          spec.max_omega,
+          spec.max_acceleration,
+          spec.max_angular_acceleration,
+          spec.axle,
+          spec.max_jerk,
+          spec.max_angular_jerk};
 }
 
 MotionState advanced(const MotionState& state,

@@ -64,6 +64,7 @@ struct MotionLimits {
   double max_v = 0, max_omega = 0;                    // [m/s], [rad/s]
   double acceleration = 0, angular_acceleration = 0;  // [m/s2], [rad/s2]
   double axle = 0;                                    // [m] x of the drive axle in R
+  double jerk = 0, angular_jerk = 0;                  // [m/s3], [rad/s3] 0: no limit
 };
 /// Those of the robot itself.
 MotionLimits limits_of(const RobotSpec& spec);

@@ -33,6 +33,7 @@ enum State : std::uint8_t {
 struct StripCommand {
   Twist2 twist{};
   strip_state::State state = strip_state::kNone;
+  bool urgent = false;  // gives way to somebody who moves: the robot's jerk does not matter
 };
 
 }  // namespace algo

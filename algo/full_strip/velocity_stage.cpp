@@ -119,8 +119,11 @@ bool VelocityStage::admissible(const StageInput& in,
   double margin = std::min(wanted, hull_.clearance(*in.map, state.pose_W) - kStepSlack);
   if (margin < kFloor) return false;
   const int ticks = std::max(1, static_cast<int>(std::lround(kHorizon / in.dt)));
+  CommandCourse course = in.course;
   for (int k = 0; k < ticks; ++k) {
-    const Twist2 command = pursue(in, state, s, share);
+    Twist2 command = pursue(in, state, s, share);
+    if (command.v > 0) command = steadied(course, command, in.dt);
+    course = followed(course, command, in.dt);
     if (k == 0) {
       first = command;
       aim_W = in.strip->at(s + lookahead(state.twist.v));

@@ -5,6 +5,7 @@
 
 #include "algo/full_strip/motion.hpp"
 #include "algo/full_strip/node_strip.hpp"
+#include "algo/full_strip/steering.hpp"
 #include "algo/full_strip/weighing.hpp"
 
 namespace algo {
@@ -15,8 +16,9 @@ struct StageInput {
   const NodeStrip* strip = nullptr;
   MotionState state{};  // when the new command begins to act
   MotionLimits limits{};
-  double dt = 0;        // [s]
-  double stop_at = -1;  // [m] along the strip, its end for now; negative: the goal
+  CommandCourse course{};  // of the commands up to the last tick's
+  double dt = 0;           // [s]
+  double stop_at = -1;     // [m] along the strip, its end for now; negative: the goal
 };
 
 /// Drives along the strip by pure pursuit. A command is admissible if the robot, following the

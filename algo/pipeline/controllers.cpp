@@ -88,6 +88,7 @@ std::vector<ControllerInfo> builtin() {
        .label = "Full elastic strip",
        .help = "Many nodes on a map of the scans, laid anew by a planner where they break, and a "
                "velocity stage that proves every command before it is given. Our extension.",
+       .keeps_jerk = true,
        .parameters = FullStripController::parameters(),
        .make = made<FullStripController>},
       {.name = "strip_moving",
@@ -96,6 +97,7 @@ std::vector<ControllerInfo> builtin() {
                "space and "
                "time gives way to it. An experiment: of the moving obstacles it is measured on it "
                "still meets many.",
+       .keeps_jerk = true,
        .parameters = FullStripController::parameters(),
        .make = [] { return std::make_unique<FullStripController>(true); }},
       {.name = "go_to_goal",

@@ -19,7 +19,9 @@ struct ControllerInfo {
   std::string_view label{};  // for people
   std::string_view help{};
   bool by_sonar = false;  // can drive a robot with a sonar ring and no laser
-  bool outside = false;   // it runs outside the program, and its answers are inputs of the run
+  bool keeps_jerk =
+      false;             // its commands keep to the robot's jerk, but for hard ones, which it tells
+  bool outside = false;  // it runs outside the program, and its answers are inputs of the run
   ParameterList parameters{};
   std::function<std::unique_ptr<Controller>()> make{};
   /// Why it cannot run with these values, as a sentence; nothing if it can. The function may be

@@ -21,6 +21,7 @@ constexpr NumberRange kMassHeight{0.001, 5};  // [m]
 constexpr NumberRange kPlace{-10, 10};        // [m] in R
 constexpr NumberRange kMass{0.01, 1e5};       // [kg]
 constexpr NumberRange kChange{1e-3, 100};     // [m/s2] and [rad/s2]
+constexpr NumberRange kJerk{0, 1e4};          // [m/s3] and [rad/s3]
 
 constexpr Field<sim::Caster> kCaster[] = {
     required("x", &sim::Caster::x, kPlace),
@@ -35,6 +36,8 @@ constexpr Field<Model> kLimits[] = {
     required("turn", &Model::max_omega, {1e-3, 20}),
     {"acceleration", &Model::max_acceleration, kChange},
     {"turn_acceleration", &Model::max_angular_acceleration, kChange},
+    {"jerk", &Model::max_jerk, kJerk},
+    {"turn_jerk", &Model::max_angular_jerk, kJerk},
 };
 
 constexpr double kDegrees = std::numbers::pi / 180;

@@ -302,6 +302,8 @@ constexpr Field<Robot> kRobot[] = {
     required("max_omega", &Robot::max_omega),
     required("max_acceleration", &Robot::max_acceleration),
     required("max_angular_acceleration", &Robot::max_angular_acceleration),
+    {"max_jerk", &Robot::max_jerk},
+    {"max_angular_jerk", &Robot::max_angular_jerk},
     {"command_delay", &Robot::command_delay},
     {"has_laser", &Robot::has_laser},
     {"has_ring", &Robot::has_ring},

@@ -76,7 +76,7 @@ TEST(VelocityStage, ASlowRobotTurnsAlongItsStripFirst) {
   s.in.limits.max_v = 0.04;
   const auto slow = s.stage.follow(s.in, s.out);
   ASSERT_TRUE(slow);
-  EXPECT_GT(slow->omega, 0.5);
+  EXPECT_GT(slow->omega, 0.3);  // of a turn that has just begun
   EXPECT_GT(slow->v, 0);
 }
 

@@ -195,7 +195,7 @@ TEST(RobotJson, BadFilesGetASentenceThatNamesTheField) {
       {R"({"limits": {"speed": null}})", "limits/speed: is missing"},
       {R"({"limits": {"turn": 0}})", "limits/turn: is 0, must lie in"},
       {R"({"limits": {"acceleration": 1e9}})", "limits/acceleration: is 1e+09, must lie in"},
-      {R"({"limits": {"jerk": 1}})", "limits: unknown field 'jerk'"},
+      {R"({"limits": {"snap": 1}})", "limits: unknown field 'snap'"},
       {R"({"friction": -0.1})", "friction: is -0.1, must lie in"},
       {R"({"counts_per_turn": 0})", "counts_per_turn: is 0, must lie in"},
       {R"({"lasers": {}})", "lasers: must be"},
