@@ -16,6 +16,7 @@ constexpr Column kMotionColumns[] = {
     {"jerk_rms_m_s3", Aggregate::Mean, 2},     // second difference of the true speed / period^2
     {"effort_m2_s3", Aggregate::Mean, 3},      // integral of (dv/dt)^2 of the commanded speed
     {"turn_flips", Aggregate::Mean, 1},        // commanded turns that follow one the other way
+    {"turn_rms_rad_s2", Aggregate::Mean, 2},   // change of the commanded turn / period
 };
 
 class Motion final : public Judge {
@@ -46,17 +47,21 @@ class Motion final : public Judge {
     row[2] = jerks_ > 0 ? std::sqrt(squared_jerk_ / jerks_) : kUnknown;
     row[3] = effort_;
     row[4] = flips_;
+    row[5] = changes_ > 0 ? std::sqrt(squared_change_ / changes_) : kUnknown;
   }
 
  private:
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
   void follow_command(const algo::Twist2& command) {
-    if (last_speed_) {
-      const double change = command.v - *last_speed_;
+    if (last_) {
+      const double change = command.v - last_->v;
       effort_ += change * change / period_;
+      const double turn = (command.omega - last_->omega) / period_;
+      squared_change_ += turn * turn;
+      ++changes_;
     }
-    last_speed_ = command.v;
+    last_ = command;
     if (std::abs(command.omega) < kTurns) return;
     const double side = std::copysign(1.0, command.omega);
     if (side_ * side < 0) flips_ += 1;
@@ -89,8 +94,10 @@ class Motion final : public Judge {
   std::size_t steps_ = 0;               // count
   double squared_jerk_ = 0;             // [m2/s6] sum
   double jerks_ = 0;                    // count
-  std::optional<double> last_speed_{};  // [m/s] commanded
+  std::optional<algo::Twist2> last_{};  // commanded
   double effort_ = 0;                   // [m2/s3]
+  double squared_change_ = 0;           // [rad2/s4] sum
+  double changes_ = 0;                  // count
   double side_ = 0;                     // of the last commanded turn: 1 left, -1 right
   double flips_ = 0;                    // count
 };

@@ -11,7 +11,7 @@ namespace {
 
 using algo::Outcome;
 
-constexpr std::array<Figure, 12> kFigures{{{"time_s", true},
+constexpr std::array<Figure, 13> kFigures{{{"time_s", true},
                                            {"path_m", true},
                                            {"turning_rad", true},
                                            {"min_clearance_m", false},
@@ -22,7 +22,8 @@ constexpr std::array<Figure, 12> kFigures{{{"time_s", true},
                                            {"bending_rad2_per_m", true},
                                            {"jerk_rms_m_s3", true},
                                            {"effort_m2_s3", true},
-                                           {"turn_flips", true}}};
+                                           {"turn_flips", true},
+                                           {"turn_rms_rad_s2", true}}};
 
 constexpr std::array kOutcomes{
     Outcome::Reached, Outcome::Collided, Outcome::Stuck, Outcome::OutOfTime, Outcome::Failed};

@@ -206,6 +206,8 @@ TEST(MotionJudge, EffortAndFlipsAreOfTheCommand) {
   command(0, 0.2), command(0.2, 0.01), command(0.1, -0.3), command(0.1, -0.2), command(0.1, 0.4);
   EXPECT_NEAR(motion["effort_m2_s3"], (0.04 + 0.01) / 0.1, 1e-12);
   EXPECT_EQ(motion["turn_flips"], 2);  // 0.2 to -0.3, past a command too slow to be a turn; to 0.4
+  const double squares = 0.19 * 0.19 + 0.31 * 0.31 + 0.1 * 0.1 + 0.6 * 0.6;
+  EXPECT_NEAR(motion["turn_rms_rad_s2"], std::sqrt(squares / 4) / 0.1, 1e-12);
 }
 
 TEST(PlaceJudge, IsTheLastTruePoseOrUnknown) {
