@@ -34,6 +34,8 @@ const std::vector<Row> kRows{
     {"[limits]", "[limits]", "turn", 0.01, 5},
     {"[limits]", "[limits]", "acceleration", 0.01, 5},
     {"[limits]", "[limits]", "turn_acceleration", 0.01, 20},
+    {"[limits]", "[limits]", "jerk", 0, 1e4},
+    {"[limits]", "[limits]", "turn_jerk", 0, 1e4},
     {"[[laser]]", "[[laser]]", "x", -5, 5},
     {"[[laser]]", "[[laser]]", "y", -5, 5},
     {"[[laser]]", "[[laser]]", "heading_deg", -360, 360},

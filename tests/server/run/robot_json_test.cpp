@@ -34,7 +34,8 @@ json carrier() {
     "mass": 200,
     "track": 0.6,
     "wheel_radius": 0.1,
-    "limits": {"speed": 0.8, "turn": 1.2, "acceleration": 0.6, "turn_acceleration": 2},
+    "limits": {"speed": 0.8, "turn": 1.2, "acceleration": 0.6, "turn_acceleration": 2,
+               "jerk": 3, "turn_jerk": 12},
     "lasers": [{"resolution_deg": 0.5, "mount": {"x": 0.55, "y": 0, "heading": 0}},
                {"resolution_deg": 1, "mount": {"x": -0.55, "y": 0, "heading": 3.141592653589793}}]
   })");
