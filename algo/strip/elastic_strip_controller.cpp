@@ -47,6 +47,7 @@ void ElasticStripController::reset(const Pose2& /*start_W*/) {
   side_.reset();
   goal_.reset();
   kept_via_W_.reset();
+  damped_W_.reset();
   buffer_.clear();
 }
 
@@ -55,6 +56,7 @@ void ElasticStripController::follow_goal(const SetGoal& goal, const Vec2& start_
   if (goal_ && goal_->position_W == goal.position_W) return;
   side_.reset();
   kept_via_W_.reset();
+  damped_W_.reset();
   buffer_.reset(start_W, goal.position_W);
   goal_ = goal;
 }
@@ -89,6 +91,13 @@ bool ElasticStripController::push(const ControlInput& in, const ForceSettings& s
     forces_.right_W = external_force(settings, p, right->point_W);
   }
   return true;
+}
+
+/// Our extension: a force that is a low-pass of the published one.
+void ElasticStripController::damp(double time_constant, double dt) {
+  const Vec2 last = damped_W_.value_or(forces_.elastic_W);
+  damped_W_ = last + dt / (time_constant + dt) * (forces_.elastic_W - last);
+  forces_.elastic_W = *damped_W_;
 }
 
 void ElasticStripController::choose(const ControlInput& in, const Vec2& goal_W, double reach) {
@@ -126,6 +135,7 @@ void ElasticStripController::update(const ControlInput& in,
   const bool free_to_move = push(in, settings);
   forces_.elastic_W = forces_.internal_W + forces_.left_W + forces_.right_W;
   if (reading_.choose_side) choose(in, goal.position_W, reach);
+  if (const double damping = parameters[kDamping]; damping > 0) damp(damping, in.dt);
   const Vec2 pass_W = update_strip(pose, strip.end_W, forces_.elastic_W).updated.position();
   kept_via_W_ = pass_W;
   out.pass_W = pass_W;

@@ -57,6 +57,7 @@ class ElasticStripController final : public Controller {
   void follow_goal(const SetGoal& goal, const Vec2& start_W);
   Strip lay_strip(const Vec2& start_W, const Vec2& goal_W, const Parameters& parameters) const;
   bool push(const ControlInput& in, const ForceSettings& settings);
+  void damp(double time_constant, double dt);
   void choose(const ControlInput& in, const Vec2& goal_W, double reach);
   Vec2 next_point(const Vec2& p_W, const Vec2& pass_W, const Parameters& parameters);
   void show(const Strip& strip, const Vec2& pass_W, const Vec2& goal_W, ControlOutput& out) const;
@@ -66,6 +67,7 @@ class ElasticStripController final : public Controller {
   SideChoice side_{};
   std::optional<SetGoal> goal_{};     // of the previous tick
   std::optional<Vec2> kept_via_W_{};  // pass point of the previous tick
+  std::optional<Vec2> damped_W_{};    // [m] elastic force of the previous tick
   ViaBuffer buffer_{};                // from where the goal was set
 };
 

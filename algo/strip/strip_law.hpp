@@ -59,12 +59,26 @@ inline constexpr ParameterInfo kViaBuffer{
         "new one is taken 0.5 m from the last reached. 1: in x or y, 2: in x and y, as printed. "
         "It collides: for comparison only. 0: to the pass point of each tick."};
 
+inline constexpr ParameterInfo kDamping{
+    .name = "strip.damping",
+    .label = "Damping",
+    .unit = "s",
+    .min = 0,
+    .max = 1,
+    .step = 0.05,
+    .initial = 0,
+    .help =
+        "Ours: the elastic force follows the published one with this time constant, which damps "
+        "the swinging from side to side. It also sees an obstacle that much later. 0: as "
+        "published."};
+
 /// The parameters of the three-point strips. K_c has no effect on one that does not keep its via
 /// point (equations.md D).
 inline constexpr auto kStripParameters = std::to_array<const ParameterInfo*>({&kRepulsionGain,
                                                                               &kSafetyDistance,
                                                                               &kStripStep,
                                                                               &kViaBuffer,
+                                                                              &kDamping,
                                                                               &kMaxSpeed,
                                                                               &kMaxTurnRate,
                                                                               &kHeadingGain,
@@ -74,7 +88,7 @@ inline constexpr auto kKeptViaParameters = std::to_array<const ParameterInfo*>({
                                                                                 &kSafetyDistance,
                                                                                 &kStripStep,
                                                                                 &kViaBuffer,
-                                                                                &kViaBuffer,
+                                                                                &kDamping,
                                                                                 &kMaxSpeed,
                                                                                 &kMaxTurnRate,
                                                                                 &kHeadingGain,
