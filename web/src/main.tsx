@@ -14,6 +14,7 @@ import { App, AppContext, use_app, use_ui } from "./app";
 import { use_listener, use_store } from "./state/store";
 import { lazy } from "./ui/lazy";
 import { Drive } from "./views/drive";
+import { Drop } from "./views/drop";
 import { Nowhere, SessionGone } from "./views/gone";
 import { stop_key, typing } from "./views/keys";
 import { Tips } from "./ui/tip";
@@ -30,11 +31,12 @@ const System = lazy(async () => (await import("./views/system")).System);
 
 const HardwareBar = lazy(async () => (await import("./views/hardware")).HardwareBar);
 const Login = lazy(async () => (await import("./views/login")).Login);
+const WhichWorld = lazy(async () => (await import("./views/which_world")).WhichWorld);
 const Shortcuts = lazy(async () => (await import("./views/shortcuts")).Shortcuts);
 
 function Shell(): JSX.Element {
   const app = use_app();
-  const { view, shortcuts, locked } = use_ui("view", "shortcuts", "locked");
+  const { view, shortcuts, locked, several } = use_ui("view", "shortcuts", "locked", "several");
   const hardware = use_store(app.ui, (u) => u.session?.source === "hardware");
   use_listener("keydown", (e) => stop_key(app, e), true);
   use_listener("keyup", (e) => stop_key(app, e), true);
@@ -59,6 +61,8 @@ function Shell(): JSX.Element {
       <Toasts />
       <Spoken />
       <Tips />
+      <Drop />
+      {several && <WhichWorld />}
       {shortcuts && <Shortcuts />}
       {locked && <Login />}
     </div>
