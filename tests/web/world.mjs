@@ -343,6 +343,13 @@ test("worlds are imported and exported, copied, deleted and brought back; bad fi
   await p.page.getByText(/obstacles\/0\/(y|radius)/).waitFor();
   p.forgive(/422/);
   await p.page.getByLabel("Dismiss").first().click();
+  const small = '{"start":[0,0,0],"goal":[3,0],"obstacles":[[1.5,0.5]]}';
+  await p.get("world-files").setInputFiles([path("two.json", `{"worlds":[${small},${small}]}`)]);
+  await p.get("which-world").selectOption("1");
+  await until("the second of two", 10, session, (s) => s.scenario.name === "barn-2");
+  await p.get("which-dialog").waitFor({ state: "detached" });
+  await control({ action: "load", scenario: "hall" });
+  await until("the map again", 10, session, (s) => s.scenario.name === "hall");
   await p.get("world-name").fill("Case1"); // built in: that it cannot be replaced is said, not asked
   await p.get("world-save").click();
   await until("it says why", 5, () => p.get("world-problem").textContent().catch(() => ""), (w) => /built in/.test(w));
