@@ -4,7 +4,7 @@ import "./style/layout.css";
 import "./style/controls.css";
 import "./style/scene.css";
 import "./style/names.css";
-import "./style/hardware.css";
+import "./style/stop.css";
 import "./style/timeline.css";
 import "./style/people.css";
 import "./style/narrow.css";
