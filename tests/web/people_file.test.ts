@@ -2,7 +2,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { empty_bounds } from "../../web/src/geometry";
-import { new_box } from "../../web/src/edit/edits";
 import { handles_of } from "../../web/src/edit/handles";
 import { read_people, world_of_people } from "../../web/src/edit/people_file";
 import { include_obstacle, obstacle_from_json, obstacle_to_json, present, topmost } from "../../web/src/obstacle";
@@ -54,7 +53,7 @@ test("one who comes and goes is there in the frames that tell of it, and nowhere
   const box = { id: 2, type: "box" as const, x: 0, y: 0, length: 1, width: 1 };
   fold_session(scene, { obstacles: [kPerson, box] } as never);
   const there = () => present(scene.obstacles).map((o) => o.id);
-  assert.deepEqual(there(), [2], "away as the run begins");
+  assert.deepEqual(there(), [2], "away until a frame tells of it");
   show_frame(scene, frame(1, []));
   assert.deepEqual(there(), [2]);
   show_frame(scene, frame(30, [{ id: 1, pose: { x: 5, y: 3.5, heading: 0 } }]));
@@ -64,13 +63,6 @@ test("one who comes and goes is there in the frames that tell of it, and nowhere
   assert.deepEqual(there(), [2]);
   assert.equal(topmost(scene.obstacles, { x: 5, y: 3.5 }, 0), null, "nobody to pick");
   assert.equal(scene.obstacles.length, 2, "it stays in the world");
-});
-
-test("a phase may have it there from the beginning", () => {
-  assert.equal(obstacle_from_json({ ...kPerson, path: { ...kPerson.path, phase: 3 } }).away, false);
-  assert.equal(obstacle_from_json({ ...kPerson, path: { ...kPerson.path, phase: -15 } }).away, false);
-  assert.equal(obstacle_from_json({ ...kPerson, path: { ...kPerson.path, phase: 7 } }).away, true);
-  assert.equal(new_box(0, 0, 1, 1).away, false);
 });
 
 test("a fitted view holds the whole way, the JSON keeps it, and no handle bends it", () => {

@@ -378,14 +378,20 @@ const kFourth = /^Cylinder 4\s+moves by itself, here from 3.5 to 5.5 s$/;
 const control = (body) => json(server.base, "/session/control", { method: "POST", body: JSON.stringify(body) });
 
 /** Drops a file of this name and text onto the page. */
-function drop(p, name, text) {
-  return p.page.evaluate(([name, text]) => {
+async function drop(p, name, text) {
+  const drag = (type) => p.page.evaluate(([type, name, text]) => {
     const dataTransfer = new DataTransfer();
     dataTransfer.items.add(new File([text], name, { type: "text/plain" }));
-    for (const type of ["dragover", "drop"]) {
-      document.body.dispatchEvent(new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true }));
-    }
-  }, [name, text]);
+    const event = new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true });
+    document.body.dispatchEvent(event);
+    return event.defaultPrevented;
+  }, [type, name, text]);
+  await until("the page asks for it", 5, async () => {
+    await drag("dragover"); // a browser repeats it
+    return p.get("drop").count();
+  });
+  assert.ok(await drag("drop"), "the file does not take the place of the page");
+  await p.get("drop").waitFor({ state: "detached" });
 }
 
 /** Plays up to `tick` and waits until it is drawn. */
@@ -413,8 +419,9 @@ test("recorded people are dropped onto the page, walk at their times and are gon
   await p.page.getByText('bad.txt, line 2: "nan 3" is no place in metres.').waitFor();
   await drop(p, "My square.txt", kPeople);
   await until("the people", 10, session, (s) => s.scenario.name === "my_square");
-  await control({ action: "reset" });
   await control({ action: "pause" });
+  await control({ action: "reset" });
+  await until("the beginning", 10, session, (s) => s.tick === 0);
   assert.equal((await obstacles()).length, 4);
   if (await p.get("layers").getAttribute("aria-expanded") === "true") await p.get("layers").click();
   await p.get("tool-pan").click();
@@ -458,8 +465,9 @@ test("people on a phone come by the dialog", { timeout: 120_000 }, async () => {
   await p.get("sheet").getByTestId("world-files").setInputFiles([file]);
   await until("the people", 10, session, (s) => s.scenario.name === "square");
   await p.get("tune").click();
-  await control({ action: "reset" });
   await control({ action: "pause" });
+  await control({ action: "reset" });
+  await until("the beginning", 10, session, (s) => s.tick === 0);
   await play_to(p, 90);
   await p.shot("people-phone");
   await p.close();

@@ -18,7 +18,7 @@ export interface Obstacle {
   bottom: number;    // [m] above the floor: there is room below it
   low: number;       // [m] top of the ground at x = -length / 2; below 0 in a trench
   path: PathJson | null; // of its reference point, if it moves by itself
-  away: boolean;     // it comes and goes, and is not there now
+  away: boolean;     // it comes and goes, and no frame has told that it is there now
   /** Optional fields of the JSON, as undo returns them; absent ones are undefined. */
   extra: Pick<ObstacleJson, "reflectivity" | "specular" | "height">;
 }
@@ -66,7 +66,7 @@ export function obstacle_from_json(json: ObstacleJson): Obstacle {
     low: json.type === "trench" ? -(json.depth ?? 0) : json.type === "step" ? height ?? 0 : json.low ?? 0,
     bottom: json.bottom ?? 0,
     path: json.path ?? null,
-    away: away_at_start(json.path ?? null),
+    away: !!json.path?.comes_and_goes,
     extra: { reflectivity, specular, height },
   };
   if (json.type === "wall" && json.from && json.to) {
@@ -81,14 +81,6 @@ export function obstacle_from_json(json: ObstacleJson): Obstacle {
     out.points = json.x === undefined ? world.map((p) => to_child(out.pose, p)) : world;
   }
   return out;
-}
-
-/** Whether one with `path` is away as the run begins. */
-export function away_at_start(path: PathJson | null): boolean {
-  if (!path?.comes_and_goes) return false;
-  const { period, phase = 0, keys } = path;
-  const t = ((phase % period) + period) % period;
-  return t < keys[0][0] || t > keys[keys.length - 1][0];
 }
 
 /** Of `obstacles` those that are there now. */
@@ -170,12 +162,9 @@ export function is_ground(o: Obstacle): boolean {
   return o.kind === "ramp" || o.kind === "step" || o.kind === "trench";
 }
 
-/** Of one that comes and goes the whole way. */
+/** Of one that moves by itself the whole way. */
 export function include_obstacle(bounds: Bounds, o: Obstacle): void {
-  if (o.path?.comes_and_goes) {
-    for (const [, x, y] of o.path.keys) include(bounds, x, y, o.radius);
-    return;
-  }
+  for (const [, x, y] of o.path?.keys ?? []) include(bounds, x, y, o.radius);
   if (o.kind === "cylinder") include(bounds, o.pose.x, o.pose.y, o.radius);
   for (const p of outline(o)) include(bounds, p.x, p.y);
 }

@@ -8,20 +8,20 @@ import { GivenFile, read_worlds, stem, text_of } from "./world_file";
 /** The scenario whose robot, scanner, controller and parameters drive among recorded people. */
 const kAmongPeople = "people";
 
-/** Opens the world in `files`, or lets the person choose if they hold several. */
-export async function import_files(app: App, files: FileList): Promise<void> {
+/** Opens the world in `files`. @return the worlds to choose from, if they hold several */
+export async function import_files(app: App, files: FileList): Promise<ScenarioDocument[] | null> {
   try {
     const worlds = await worlds_in(await given(files));
-    if (worlds.length === 1) await open_world(app, worlds[0]);
-    else app.ui.set({ several: worlds });
+    if (worlds.length > 1) return worlds;
+    await open_world(app, worlds[0]);
   } catch (error) {
     app.toast("bad", error instanceof Error ? error.message : String(error));
   }
+  return null;
 }
 
 /** Keeps `world` under a name that is not taken, so that an import replaces nothing, and opens it. */
 export async function open_world(app: App, world: ScenarioDocument): Promise<void> {
-  app.ui.set({ several: null });
   const name = free_name(app, world.name);
   const saved = await app.attempt(rest.put(`/scenarios/${name}`, { ...world, name }));
   if (saved === null) return;

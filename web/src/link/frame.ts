@@ -3,7 +3,7 @@ import * as flatbuffers from "flatbuffers";
 import type { HandGoalJson } from "../contract";
 import { Point, Pose } from "../geometry";
 import { LayerView } from "../layer";
-import { Obstacle, ObstacleKind, PathJson, away_at_start } from "../obstacle";
+import { Obstacle, ObstacleKind, PathJson } from "../obstacle";
 import type { DrivenStick } from "../state/stick";
 import * as wire from "../wire/telemetry_generated";
 import { Legends, Measure, legend_of, shown } from "./legend";
@@ -274,7 +274,6 @@ function obstacle(o: wire.Obstacle): Obstacle {
   const named = kKinds[o.kind()] ?? "cylinder";
   const kind = named === "ramp" && low === height ? "step" : named;
   const size = point(o.size());
-  const way = path(o.path());
   return {
     id: o.id(),
     kind,
@@ -286,8 +285,8 @@ function obstacle(o: wire.Obstacle): Obstacle {
     height: kind === "trench" ? 0 : kind === "ramp" ? height : height || 1,
     low,
     bottom: o.bottom(),
-    path: way,
-    away: away_at_start(way),
+    path: path(o.path()),
+    away: false,
     extra: {},
   };
 }
@@ -295,7 +294,7 @@ function obstacle(o: wire.Obstacle): Obstacle {
 function path(p: wire.ObstaclePath | null): PathJson | null {
   if (!p) return null;
   const keys = list(p.keysLength() / 3, (i) => [p.keys(3 * i)!, p.keys(3 * i + 1)!, p.keys(3 * i + 2)!]);
-  return { period: p.period(), phase: p.phase(), ...(p.comesAndGoes() && { comes_and_goes: true }), keys: keys as PathJson["keys"] };
+  return { period: p.period(), phase: p.phase(), comes_and_goes: p.comesAndGoes(), keys: keys as PathJson["keys"] };
 }
 
 function wanted(g: wire.SetGoal): Goal {

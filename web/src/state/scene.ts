@@ -197,8 +197,7 @@ function moved_by_themselves(obstacles: Obstacle[], f: Frame | null): Obstacle[]
   const places = new Map(f.moved.map((m) => [m.id, m.pose]));
   return obstacles.map((o) => {
     const pose = places.get(o.id);
-    if (pose) return { ...o, pose, away: false };
-    return o.path?.comes_and_goes && !o.away ? { ...o, away: true } : o;
+    return { ...o, pose: pose ?? o.pose, away: !pose && !!o.path?.comes_and_goes };
   });
 }
 

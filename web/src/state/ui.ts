@@ -1,5 +1,5 @@
 // web/src/state/ui.ts: the state of the page that its views show, as it begins.
-import { Catalog, RobotItem, ScenarioDocument, ScenarioItem, SessionState } from "../contract";
+import { Catalog, RobotItem, ScenarioItem, SessionState } from "../contract";
 import { Selection } from "../draw/scene";
 import { Camera } from "../draw/view";
 import { Tool } from "../edit/gestures";
@@ -55,7 +55,6 @@ export interface UiState {
   views: boolean;       // the menu of a small height is open
   undo: string | null;
   redo: string | null;
-  several: ScenarioDocument[] | null; // of an imported file that holds more than one
 }
 
 export function first_ui(): UiState {
@@ -66,6 +65,6 @@ export function first_ui(): UiState {
     theme: stored_theme(), tool: stored_tool(), selection: null, three: stored_three(), follow: false,
     snap: true, appending: false, force_scale: 1, hidden: stored_hidden(), layers: stored_open(), shortcuts: false,
     sheet: false, tab: "", loading: null,
-    stop: { phase: "none", since: 0 }, preview: null, step: kept_step(), views: false, undo: null, redo: null, several: null,
+    stop: { phase: "none", since: 0 }, preview: null, step: kept_step(), views: false, undo: null, redo: null,
   };
 }

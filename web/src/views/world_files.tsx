@@ -11,6 +11,7 @@ import { session_path } from "../link/session";
 import { download } from "../ui/download";
 import { Dialog, Pick, Problem, use_problem } from "../ui/controls";
 import { icons } from "../ui/icons";
+import { WhichWorld } from "./which_world";
 
 export function WorldFiles(): JSX.Element {
   const app = use_app();
@@ -115,6 +116,7 @@ function Open(props: { on_close: () => void }): JSX.Element {
 function Import(): JSX.Element {
   const app = use_app();
   const input = useRef<HTMLInputElement>(null);
+  const [several, set_several] = useState<ScenarioDocument[] | null>(null);
   return (
     <>
       <button class="ghost" data-testid="world-import" title="A scenario or BARN file (.json), a map (.pgm and .yaml), or recorded people (.txt)"
@@ -122,8 +124,10 @@ function Import(): JSX.Element {
       <input ref={input} type="file" multiple hidden accept=".json,.pgm,.yaml,.yml,.txt,.csv" aria-label="Files of a world" data-testid="world-files"
         onChange={(e) => {
           const { files } = e.currentTarget;
-          if (files && files.length > 0) void import_files(app, files).finally(() => (input.current!.value = ""));
+          if (files && files.length > 0) void import_files(app, files).then(set_several);
+          e.currentTarget.value = "";
         }} />
+      {several && <WhichWorld worlds={several} on_close={() => set_several(null)} />}
     </>
   );
 }
