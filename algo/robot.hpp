@@ -164,7 +164,8 @@ class Robot {
   virtual Arming* arming() { return nullptr; }
   virtual Editing* editing() { return nullptr; }
   virtual std::optional<GroundTruth> ground_truth() const { return std::nullopt; }
-  /// Lists the obstacles that move by themselves. Overwrites `moved` but keeps its buffers.
+  /// Lists the obstacles that move by themselves and are there. Overwrites `moved` but keeps its
+  /// buffers.
   virtual void find_moved(Recycled<Moved>& moved) const { moved.clear(); }
   /// Null if the robot knows no map.
   virtual Locating* locating() { return nullptr; }

@@ -39,6 +39,12 @@ double between(std::span<const algo::Vec2> one, std::span<const algo::Vec2> othe
 
 }  // namespace
 
+algo::Pose2 pose_at(const algo::Obstacle& mover, double now) {
+  if (!mover.path->is_there(now)) return kAway;
+  const algo::Vec2 at_W = mover.path->at(now);
+  return {at_W.x(), at_W.y(), mover.pose_W.heading};
+}
+
 std::optional<std::size_t> ObstacleSet::find(std::uint32_t id) const {
   for (std::size_t i = 0; i < items_.size(); ++i) {
     if (items_[i].obstacle.id == id) return i;

@@ -15,6 +15,12 @@ namespace sim {
 
 using algo::Hull;
 
+/// Where a sensor keeps an obstacle that is not there: out of reach of all of them.
+inline constexpr algo::Pose2 kAway{1e7, 1e7, 0};
+
+/// The pose at `now` [s, run clock] of `mover`, which follows a path; kAway while it is away.
+algo::Pose2 pose_at(const algo::Obstacle& mover, double now);
+
 /// Obstacles in the order of addition, each with its outline and bounding circle. A distance costs
 /// little even with a thousand of them, and allocates nothing. Distances to all of them leave out
 /// ramps and trenches, which a robot drives over, and what hangs above the robot; those to one of

@@ -93,6 +93,7 @@ void World::check() const {
 /// Sets everything to the scenario's state at time 0.
 void World::start() {
   starting_ = true;
+  tick_ = 0;
   obstacles_.clear();
   solids_.reset();
   movers_.clear();
@@ -128,9 +129,8 @@ void World::start() {
     vehicle_->stand_on(obstacles_);
     trail_->tilt(vehicle_->state().tilt());
   }
-  follow_paths(0);
+  follow_paths();
   starting_ = false;
-  tick_ = 0;
   command_ = {};
   touched_.reset();
   bumped_ = false;
@@ -170,7 +170,7 @@ bool World::step(const algo::Command& command, algo::Observation& observation) {
 void World::advance() {
   used_ = true;
   ++tick_;
-  follow_paths(static_cast<double>(tick_) * scenario_.period);
+  follow_paths();
   if (robot_.arm) {
     algo::JointValues rates{};
     std::copy_n(command_.joint_rates.begin(), rates.size(), rates.begin());
@@ -179,30 +179,34 @@ void World::advance() {
   vehicle_->drive(errors_.act(command_.base), obstacles_, *trail_);
 }
 
-/// Moves scripted obstacles to their positions at `now`, even through robots.
-void World::follow_paths(double now) {
-  for (const std::uint32_t id : movers_) {
-    const std::size_t index = *obstacles_.find(id);
-    const algo::Obstacle& obstacle = obstacles_[index];
-    const algo::Vec2 at_W = obstacle.path->at(now);
-    place(index, {at_W.x(), at_W.y(), obstacle.pose_W.heading});
+/// Moves scripted obstacles to their positions now, even through robots.
+void World::follow_paths() {
+  const double time = now();
+  for (Mover& mover : movers_) {
+    const algo::Obstacle& obstacle = obstacles_[mover.index];
+    if (obstacle.path->is_there(time)) {
+      place(mover.index, pose_at(obstacle, time));
+      mover.there = true;
+    } else if (mover.there) {
+      hide(mover);
+    }
   }
 }
 
 void World::find_moved(algo::Recycled<algo::Moved>& moved) const {
   moved.clear();
-  for (const std::uint32_t id : movers_) {
-    moved.push_back({id, obstacles_[*obstacles_.find(id)].pose_W});
+  for (const Mover& mover : movers_) {
+    if (mover.there) moved.push_back({mover.id, obstacles_[mover.index].pose_W});
   }
 }
 
 void World::sense(algo::Observation& observation) {
   used_ = true;  // the scanners have drawn their noise
-  const double now = static_cast<double>(tick_) * scenario_.period;
   observation.clear_sensors();
-  observation.stamp = now;
+  observation.stamp = now();
   sense_motion(observation);
-  const Surroundings around{now, vehicle_->state(), *trail_, obstacles_, contact(), solids_.get()};
+  const Surroundings around{
+      now(), vehicle_->state(), *trail_, obstacles_, contact(), solids_.get()};
   for (const auto& sensor : sensors_) sensor->sense(around, observation);
 }
 

@@ -82,6 +82,20 @@ class World final : public algo::Robot, public algo::Editing {
   void find_moved(algo::Recycled<algo::Moved>& moved) const override;
 
  private:
+  /// An obstacle that represents a near robot; reused for any robot.
+  struct Slot {
+    std::uint32_t id = 0;   // of the obstacle
+    std::size_t index = 0;  // in the ObstacleSet
+    bool taken = false;
+    bool solid = false;  // near enough for the vehicle to know it
+  };
+  /// An obstacle that follows a path.
+  struct Mover {
+    std::uint32_t id = 0;
+    std::size_t index = 0;  // in the ObstacleSet
+    bool there = true;
+  };
+
   void check() const;
   void start();
   void start_localization(const algo::Pose2& pose_W);
@@ -91,13 +105,15 @@ class World final : public algo::Robot, public algo::Editing {
   bool under_robot(const algo::Obstacle& obstacle) const;
   void insert(const algo::Obstacle& obstacle);
   void remove(std::uint32_t id);
-  void follow_paths(double now);
+  double now() const { return static_cast<double>(tick_) * scenario_.period; }  // [s, run clock]
+  void follow_paths();
+  void hide(Mover& mover);
   void place(std::size_t index, const algo::Pose2& pose_W);
   void show(std::uint32_t id, const algo::Pose2& pose_W);
   std::size_t free_slot(const algo::Obstacle& robot);
   void place_peer(std::size_t slot, const algo::Pose2& pose_W);
   void hide_peer(std::size_t slot);
-  void find_slots();
+  void find_indices();
   double sight() const;
   void feel_peers();
   bool contact() const { return bumped_ || vehicle_->state().contact; }
@@ -106,13 +122,6 @@ class World final : public algo::Robot, public algo::Editing {
   void sense_turn(algo::Observation& observation);
   void add_arm(algo::GroundTruth& truth) const;
 
-  /// An obstacle that represents a near robot; reused for any robot.
-  struct Slot {
-    std::uint32_t id = 0;   // of the obstacle
-    std::size_t index = 0;  // in the ObstacleSet
-    bool taken = false;
-    bool solid = false;  // near enough for the vehicle to know it
-  };
   static constexpr std::size_t kNoSlot = std::numeric_limits<std::size_t>::max();
 
   Scenario scenario_{};
@@ -124,7 +133,7 @@ class World final : public algo::Robot, public algo::Editing {
   ObstacleSet obstacles_;
   std::optional<ArmReach> reach_{};        // of a robot with an arm
   std::unique_ptr<SolidCaster> solids_{};  // all obstacles, while the ground is not level
-  std::vector<std::uint32_t> movers_{};    // ids of the obstacles that follow a path
+  std::vector<Mover> movers_{};
   std::unique_ptr<VehicleModel> vehicle_{};
   std::vector<std::unique_ptr<Sensor>> sensors_{};
   std::optional<GyroModel> gyro_{};

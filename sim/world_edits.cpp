@@ -74,6 +74,7 @@ std::optional<std::string> World::refusal(const algo::Obstacle& obstacle) const 
   if (const auto problem = algo::defect(obstacle)) {
     return name_of(obstacle) + ": " + *problem + ".";
   }
+  if (obstacle.path && !obstacle.path->is_there(now())) return std::nullopt;
   if (algo::is_ground(obstacle)) {
     if (scenario_.physics == PhysicsKind::Kinematic) {
       return name_of(obstacle) + ": a ramp or trench needs physics bullet.";
@@ -107,7 +108,6 @@ std::optional<std::string> World::objection(const algo::MoveObstacle& move) cons
 
 void World::insert(const algo::Obstacle& obstacle) {
   obstacles_.add(obstacle);
-  if (obstacle.path) movers_.push_back(obstacle.id);
   vehicle_->added(obstacle);
   for (const auto& sensor : sensors_) sensor->add(obstacle);
   if (solids_) {
@@ -115,7 +115,21 @@ void World::insert(const algo::Obstacle& obstacle) {
   } else if (algo::is_ground(obstacle)) {
     solids_ = std::make_unique<SolidCaster>();
     for (std::size_t k = 0; k < obstacles_.size(); ++k) solids_->add(obstacles_[k]);
+    for (const Mover& mover : movers_) {
+      if (!mover.there) solids_->move(mover.id, kAway);
+    }
   }
+  if (!obstacle.path) return;
+  movers_.push_back({.id = obstacle.id, .index = obstacles_.size() - 1});
+  if (!obstacle.path->is_there(now())) hide(movers_.back());
+}
+
+/// Takes `mover` away until its path brings it back.
+void World::hide(Mover& mover) {
+  obstacles_.hide(mover.index);
+  vehicle_->moved(mover.index, obstacles_[mover.index]);
+  show(mover.id, kAway);
+  mover.there = false;
 }
 
 void World::place(std::size_t index, const algo::Pose2& pose_W) {
@@ -133,7 +147,7 @@ void World::show(std::uint32_t id, const algo::Pose2& pose_W) {
 void World::remove(std::uint32_t id) {
   const std::size_t index = *obstacles_.find(id);
   obstacles_.remove(index);
-  std::erase(movers_, id);
+  std::erase_if(movers_, [id](const Mover& mover) { return mover.id == id; });
   vehicle_->removed(index);
   for (const auto& sensor : sensors_) sensor->remove(id);
   if (solids_) solids_->remove(id);
@@ -141,7 +155,7 @@ void World::remove(std::uint32_t id) {
     solids_.reset();
     trail_->level();
   }
-  find_slots();
+  find_indices();
 }
 
 }  // namespace sim

@@ -9,7 +9,6 @@ namespace sim {
 namespace {
 
 constexpr double kSolid = BulletVehicle::kNear + 0.01;  // [m] beyond hull, body and a tick's travel
-constexpr double kAway = 1e7;                           // [m] out of reach of all sensors
 
 double size_of(const RobotModel& robot) {
   return std::max(robot.radius, std::hypot(robot.hull_length, robot.hull_width) / 2);
@@ -102,15 +101,16 @@ void World::place_peer(std::size_t number, const algo::Pose2& pose_W) {
 void World::hide_peer(std::size_t number) {
   Slot& slot = slots_[number];
   obstacles_.hide(slot.index);
-  show(slot.id, {kAway, kAway, 0});
+  show(slot.id, kAway);
   if (slot.solid) vehicle_->moved(slot.index, obstacles_[slot.index]);
   slot.taken = false;
   slot.solid = false;
 }
 
 /// Updates the indices of obstacles after one was removed.
-void World::find_slots() {
+void World::find_indices() {
   for (Slot& slot : slots_) slot.index = *obstacles_.find(slot.id);
+  for (Mover& mover : movers_) mover.index = *obstacles_.find(mover.id);
 }
 
 /// Checks whether another robot overlaps this one, and which robot a contact is with: the nearest.

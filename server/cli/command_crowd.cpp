@@ -6,7 +6,11 @@
 
 #include "server/cli/cli.hpp"
 #include "server/cli/pool_options.hpp"
+#include "server/lab/crowd/crowd_scenario.hpp"
 #include "server/lab/crowd/crowd_study.hpp"
+#include "server/run/json_limits.hpp"
+#include "server/run/scenario_json.hpp"
+#include "server/run/text_file.hpp"
 
 namespace server {
 namespace {
@@ -17,6 +21,7 @@ constexpr const char* kScenario = "people";
 struct CrowdCommand {
   std::string file{};
   std::string tracks{};
+  std::string scenario{};
   bool as_json = false;
   RunFlags flags{};
   experiment::PoolOptions pool{};
@@ -25,6 +30,10 @@ struct CrowdCommand {
 int execute(CrowdCommand command) {
   const crowd::Recording recording = crowd::read_people(std::filesystem::path(command.file));
   const RunSpec robot = make_spec(find_scenario(kScenario), command.flags.resolved(), own_robots());
+  if (!command.scenario.empty()) {
+    write_text(command.scenario, dump_json(to_json(scenario_of(recording, robot.scenario))) + "\n");
+    return kReached;
+  }
   crowd::CrowdStudy study;
   {
     ProgressLine progress;
@@ -53,6 +62,12 @@ void add_crowd_command(Command app, int& status) {
   crowd
       .add_option(
           "--tracks", command->tracks, "Also write the robot's true pose at each tick, as CSV")
+      .check(refuse_folder)
+      .type_name("FILE");
+  crowd
+      .add_option("--scenario",
+                  command->scenario,
+                  "Drive nothing: write the first crossing to this file as a scenario for the page")
       .check(refuse_folder)
       .type_name("FILE");
   crowd.add_flag("--json", command->as_json, "Print JSON");

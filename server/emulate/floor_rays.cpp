@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "sim/floor_beams.hpp"
+#include "sim/obstacle_set.hpp"
 
 namespace server::emulate {
 namespace {
@@ -34,8 +35,7 @@ std::array<double, drivers::psd::kSensors> FloorRays::sense(double now,
                                                             const algo::Pose2& robot_W,
                                                             const algo::Tilt& tilt) {
   for (const algo::Obstacle& obstacle : moving_) {
-    const algo::Vec2 at_W = obstacle.path->at(now);
-    caster_.move(obstacle.id, {at_W.x(), at_W.y(), obstacle.pose_W.heading});
+    caster_.move(obstacle.id, sim::pose_at(obstacle, now));
   }
   std::array<double, drivers::psd::kSensors> metres{};
   const auto beams = sim::floor_beams(sensors_, sim::space_pose(robot_W, tilt));

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "algo/units.hpp"
+#include "sim/obstacle_set.hpp"
 
 namespace server::emulate {
 namespace {
@@ -67,10 +68,8 @@ void Mirror::follow(const drivers::lms200::Sweep& sweep, double now) {
   }
   for (const algo::Obstacle& obstacle : scenario_.obstacles) {
     if (!obstacle.path) continue;
-    const algo::Vec2 at_W = obstacle.path->at(now);
-    for (sim::LaserModel& model : models_) {
-      model.move(obstacle.id, {at_W.x(), at_W.y(), obstacle.pose_W.heading});
-    }
+    const algo::Pose2 pose_W = sim::pose_at(obstacle, now);
+    for (sim::LaserModel& model : models_) model.move(obstacle.id, pose_W);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "algo/units.hpp"
 #include "drivers/robot_file.hpp"
+#include "sim/obstacle_set.hpp"
 
 namespace server::emulate {
 namespace {
@@ -21,7 +22,10 @@ constexpr std::uint8_t kPerArray = 8;
 
 SonarRing::SonarRing(const sim::Scenario& scenario)
     : mounts_R_(drivers::pioneer_sonars()), caster_(kHeight), ranges_(kRays) {
-  for (const algo::Obstacle& obstacle : scenario.obstacles) caster_.add(obstacle);
+  for (const algo::Obstacle& obstacle : scenario.obstacles) {
+    caster_.add(obstacle);
+    if (obstacle.path) moving_.push_back(obstacle);
+  }
 }
 
 double SonarRing::range(std::uint8_t index, const algo::Pose2& robot_W) {
@@ -33,6 +37,9 @@ double SonarRing::range(std::uint8_t index, const algo::Pose2& robot_W) {
 void SonarRing::sense(double now,
                       const algo::Pose2& robot_W,
                       std::vector<drivers::emulators::SonarEcho>& echoes) {
+  for (const algo::Obstacle& obstacle : moving_) {
+    caster_.move(obstacle.id, sim::pose_at(obstacle, now));
+  }
   for (; static_cast<double>(pings_) * kPing <= now; ++pings_) {
     const auto front = static_cast<std::uint8_t>(pings_ % kPerArray);
     for (const std::uint8_t index : {front, static_cast<std::uint8_t>(front + kPerArray)}) {

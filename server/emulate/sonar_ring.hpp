@@ -24,6 +24,7 @@ class SonarRing {
  private:
   double range(std::uint8_t index, const algo::Pose2& robot_W);
 
+  std::vector<algo::Obstacle> moving_{};
   std::vector<algo::Pose2> mounts_R_;
   sim::RangeCaster caster_;
   std::vector<double> ranges_{};  // one per ray of a cone

@@ -27,8 +27,12 @@ class Truth {
     for (std::size_t i = 0; i < scenario_.obstacles.size(); ++i) {
       const algo::Obstacle& obstacle = scenario_.obstacles[i];
       if (!obstacle.path) continue;
-      const algo::Vec2 p_W = obstacle.path->at(stamp);
-      set_.move(i, {p_W.x(), p_W.y(), 0});
+      if (obstacle.path->is_there(stamp)) {
+        const algo::Vec2 p_W = obstacle.path->at(stamp);
+        set_.move(i, {p_W.x(), p_W.y(), 0});
+      } else {
+        set_.hide(i);
+      }
     }
     return set_;
   }
@@ -42,12 +46,13 @@ sim::Hull hull_of(const algo::RobotSpec& spec) {
   return {spec.radius, spec.half_length, spec.half_width};
 }
 
-/// True if an obstacle that the robot touched, or nearly touched, jumped in the time before the
-/// contact.
+/// True if an obstacle that the robot touched, or nearly touched, jumped or appeared in the time
+/// before the contact.
 bool jumped(const sim::Scenario& scenario, const algo::RobotSpec& spec, const Moment& contact) {
   return std::ranges::any_of(scenario.obstacles, [&](const algo::Obstacle& obstacle) {
     if (!obstacle.path) return false;
     const algo::ObstaclePath& path = *obstacle.path;
+    if (!path.is_there(contact.stamp)) return false;
     const double far = (path.at(contact.stamp) - contact.pose_W.position()).norm();
     const auto* const cylinder = std::get_if<algo::Cylinder>(&obstacle.shape);
     const double radius = cylinder != nullptr ? cylinder->radius : 0;
@@ -55,6 +60,7 @@ bool jumped(const sim::Scenario& scenario, const algo::RobotSpec& spec, const Mo
     const double begin = contact.stamp - kBefore;
     const int steps = static_cast<int>(std::lround(kBefore / kStep));
     for (int k = 1; k <= steps; ++k) {
+      if (!path.is_there(begin + k * kStep)) return true;
       const algo::Vec2 before_W = path.at(begin + (k - 1) * kStep);
       if ((path.at(begin + k * kStep) - before_W).norm() > kJump) return true;
     }

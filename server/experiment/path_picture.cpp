@@ -51,6 +51,7 @@ Eigen::AlignedBox2d bounds_of(const sim::Scenario& scenario, std::span<const Dra
 
 void draw_world(const sim::Scenario& scenario, double goal_radius, SvgPlot& plot) {
   for (const algo::Obstacle& obstacle : scenario.obstacles) {
+    if (obstacle.path && !obstacle.path->is_there(0)) continue;
     if (const auto* cylinder = std::get_if<algo::Cylinder>(&obstacle.shape)) {
       plot.circle(obstacle.pose_W.position(), cylinder->radius, "class=\"obstacle\"");
     } else {

@@ -44,7 +44,7 @@ void check_alignment(const flatbuffers::Vector<Element>& list) {
 }
 
 algo::ObstaclePath read_path(const fb::ObstaclePath& path) {
-  algo::ObstaclePath out{path.period(), path.phase(), {}};
+  algo::ObstaclePath out{path.period(), path.phase(), {}, path.comes_and_goes()};
   if (path.keys() == nullptr || path.keys()->size() % 3 != 0 || !(path.period() > 0)) {
     throw WireError("The path of an obstacle in the frame is not complete.");
   }

@@ -56,7 +56,7 @@ Offset<fb::ObstaclePath> write_path(Builder& b, const algo::ObstaclePath& path) 
   for (const auto& key : path.keys) {
     keys.insert(keys.end(), {key.time, key.position_W.x(), key.position_W.y()});
   }
-  return fb::CreateObstaclePathDirect(b, path.period, path.phase, &keys);
+  return fb::CreateObstaclePathDirect(b, path.period, path.phase, &keys, path.comes_and_goes);
 }
 
 Offset<fb::Obstacle> write_obstacle(Builder& b, const algo::Obstacle& o) {

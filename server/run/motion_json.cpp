@@ -39,10 +39,11 @@ json to_json(const sim::DriveConfig& drive) {
 }
 
 algo::ObstaclePath path_from_json(const JsonReader& in) {
-  in.only({"period", "phase", "keys"});
+  in.only({"period", "phase", "comes_and_goes", "keys"});
   algo::ObstaclePath path;
   path.period = in.number("period", {0.1, kMaxTime});
   path.phase = in.number_or("phase", 0, {-kMaxTime, kMaxTime});
+  path.comes_and_goes = in.flag_or("comes_and_goes", false);
   double last = -1;
   in.each("keys", kMaxKeys, [&](const json& key, const std::string& at) {
     if (!key.is_array() || key.size() != 3) {
@@ -64,7 +65,9 @@ json to_json(const algo::ObstaclePath& path) {
   for (const auto& key : path.keys) {
     keys.push_back({key.time, key.position_W.x(), key.position_W.y()});
   }
-  return {{"period", path.period}, {"phase", path.phase}, {"keys", std::move(keys)}};
+  json out = {{"period", path.period}, {"phase", path.phase}, {"keys", std::move(keys)}};
+  if (path.comes_and_goes) out["comes_and_goes"] = true;
+  return out;
 }
 
 }  // namespace server

@@ -14,7 +14,8 @@ namespace server {
 sim::DriveConfig drive_from_json(const JsonReader& in);
 nlohmann::json to_json(const sim::DriveConfig& drive);
 
-/// The path of obstacle `id`: {"period","phase"?,"keys":[[t,x,y],...]}, times ascending from 0.
+/// The path of obstacle `id`: {"period","phase"?,"comes_and_goes"?,"keys":[[t,x,y],...]}, times
+/// ascending from 0.
 algo::ObstaclePath path_from_json(const JsonReader& in);
 nlohmann::json to_json(const algo::ObstaclePath& path);
 

@@ -101,7 +101,11 @@ std::string odometry_json(const algo::Telemetry& t) {
 
 std::string obstacles_json(double stamp, std::span<const algo::Obstacle> obstacles) {
   json entities = json::array();
-  for (const algo::Obstacle& o : obstacles) entities.push_back(obstacle_entity(stamp, o));
+  for (const algo::Obstacle& o : obstacles) {
+    // Sent once, it would stand where it is seldom.
+    if (o.path && o.path->comes_and_goes) continue;
+    entities.push_back(obstacle_entity(stamp, o));
+  }
   // Type 1 deletes all; the entities of the same update come after it.
   json deletions = json::array({{{"timestamp", time_json(stamp)}, {"type", 1}, {"id", ""}}});
   return scene_json(std::move(entities), std::move(deletions)).dump();

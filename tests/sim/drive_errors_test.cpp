@@ -82,6 +82,20 @@ TEST(ObstaclePath, IsLinearBetweenKeysAndJumpsBack) {
   EXPECT_EQ(later.at(0), algo::Vec2(2.5, 0));
 }
 
+TEST(ObstaclePath, OneThatComesAndGoesIsThereFromItsFirstKeyToItsLast) {
+  algo::ObstaclePath p{.period = 4, .keys = {{1, {2, 0}}, {3, {3, 0}}}};
+  EXPECT_TRUE(p.is_there(0.5)) << "it stands at its first key";
+  p.comes_and_goes = true;
+  EXPECT_FALSE(p.is_there(0.99));
+  EXPECT_TRUE(p.is_there(1));
+  EXPECT_TRUE(p.is_there(3));
+  EXPECT_FALSE(p.is_there(3.01));
+  EXPECT_TRUE(p.is_there(5)) << "the path repeats";
+  p.phase = 1;
+  EXPECT_TRUE(p.is_there(0));
+  EXPECT_FALSE(p.is_there(2.5));
+}
+
 Scenario moving_scenario(PhysicsKind physics) {
   Scenario scenario;
   scenario.physics = physics;

@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { SessionState } from "../../web/src/contract";
 import { clean_name } from "../../web/src/link/name";
 import { Me, may, person_words, refusal } from "../../web/src/people";
-import { disarmed_words } from "../../web/src/views/hardware";
+import { disarmed_words } from "../../web/src/views/hardware_words";
 import { deeds } from "../../web/src/views/watching";
 
 const me = (role: Me["role"], label = "Ann"): Me =>

@@ -1,11 +1,12 @@
 // tests/web/world.mjs: a world is drawn, saved, opened and driven, by mouse, by touch and by keyboard; nothing
 // that was built is lost.
 import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { desktop, launch, open, phone } from "./page.mjs";
-import { json, near, scratch, serve, until } from "./program.mjs";
+import { binary, json, near, scratch, serve, until } from "./program.mjs";
 
 let browser;
 let server;
@@ -342,6 +343,13 @@ test("worlds are imported and exported, copied, deleted and brought back; bad fi
   await p.page.getByText(/obstacles\/0\/(y|radius)/).waitFor();
   p.forgive(/422/);
   await p.page.getByLabel("Dismiss").first().click();
+  const small = '{"start":[0,0,0],"goal":[3,0],"obstacles":[[1.5,0.5]]}';
+  await p.get("world-files").setInputFiles([path("two.json", `{"worlds":[${small},${small}]}`)]);
+  await p.get("which-world").selectOption("1");
+  await until("the second of two", 10, session, (s) => s.scenario.name === "barn-2");
+  await p.get("which-dialog").waitFor({ state: "detached" });
+  await control({ action: "load", scenario: "hall" });
+  await until("the map again", 10, session, (s) => s.scenario.name === "hall");
   await p.get("world-name").fill("Case1"); // built in: that it cannot be replaced is said, not asked
   await p.get("world-save").click();
   await until("it says why", 5, () => p.get("world-problem").textContent().catch(() => ""), (w) => /built in/.test(w));
@@ -358,5 +366,109 @@ test("worlds are imported and exported, copied, deleted and brought back; bad fi
   await p.page.keyboard.press("Escape");
   await p.get("toast-undo").click();
   await until("back", 5, () => json(server.base, "/scenarios"), ({ items }) => items.some((s) => s.name === "hall_copy"));
+  await p.close();
+});
+
+/**
+ * Two far aside make a square of 12 x 8 m; a third walks before the robot from 2 s to 6 s of the recording, and a fourth
+ * behind it, where it sees nobody, from 3.5 s to 5.5 s.
+ */
+const kPeople = "100 1 0 0\n2600 1 0 0\n100 2 12 8\n2600 2 12 8\n150 3 6 1.5\n250 3 10 1.5\n187.5 4 1 1.5\n237.5 4 1 3\n";
+const kFourth = /^Cylinder 4\s+moves by itself, here from 3.5 to 5.5 s$/;
+const control = (body) => json(server.base, "/session/control", { method: "POST", body: JSON.stringify(body) });
+
+/** Drops a file of this name and text onto the page. */
+async function drop(p, name, text) {
+  const drag = (type) => p.page.evaluate(([type, name, text]) => {
+    const dataTransfer = new DataTransfer();
+    dataTransfer.items.add(new File([text], name, { type: "text/plain" }));
+    const event = new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true });
+    document.body.dispatchEvent(event);
+    return event.defaultPrevented;
+  }, [type, name, text]);
+  await until("the page asks for it", 5, async () => {
+    await drag("dragover"); // a browser repeats it
+    return p.get("drop").count();
+  });
+  assert.ok(await drag("drop"), "the file does not take the place of the page");
+  await p.get("drop").waitFor({ state: "detached" });
+}
+
+/** Plays up to `tick` and waits until it is drawn. */
+async function play_to(p, tick) {
+  const { tick: now } = await session();
+  await control({ action: "step", ticks: tick - now });
+  await until(`tick ${tick}`, 40, session, (s) => s.tick >= tick);
+  await p.draws(tick);
+}
+
+/** The title of the card that opens under the mouse at a place of the world, or "". */
+async function card_at(p, x, y) {
+  await p.page.mouse.move(5, 5);
+  await p.page.getByTestId("inspect").waitFor({ state: "detached" });
+  const px = await p.pixels(x, y);
+  await p.page.mouse.move(px.x - 1, px.y);
+  await p.page.mouse.move(px.x, px.y);
+  await p.page.waitForTimeout(700); // the card's code comes with the first card
+  return await p.page.getByTestId("inspect").count() > 0 ? p.page.locator('[data-testid="inspect"] h2').innerText() : "";
+}
+
+test("recorded people are dropped onto the page, walk at their times and are gone after them", { timeout: 180_000 }, async () => {
+  const p = await fresh({ size: desktop, theme: "light" });
+  await drop(p, "bad.txt", "0 1 2 3\n0 2 nan 3\n");
+  await p.page.getByText('bad.txt, line 2: "nan 3" is no place in metres.').waitFor();
+  await drop(p, "My square.txt", kPeople);
+  await until("the people", 10, session, (s) => s.scenario.name === "my_square");
+  await control({ action: "pause" });
+  await control({ action: "reset" });
+  await until("the beginning", 10, session, (s) => s.tick === 0);
+  assert.equal((await obstacles()).length, 4);
+  if (await p.get("layers").getAttribute("aria-expanded") === "true") await p.get("layers").click();
+  await p.get("tool-pan").click();
+
+  await play_to(p, 60);
+  assert.equal(await card_at(p, 1, 1.5), "", "not yet there");
+  await play_to(p, 90);
+  assert.match(await card_at(p, 1, 2.25), kFourth, "half way");
+  const room = await p.get("figure-clearance").innerText();
+  await p.shot("people-walk");
+  await play_to(p, 125);
+  for (const y of [1.5, 2.25, 3]) assert.equal(await card_at(p, 1, y), "", "gone");
+  await p.shot("people-gone");
+  // Looking back, they walk again.
+  const look_back = async (t) => {
+    await p.get("live-timeline").fill(String(t));
+    await p.draws(Math.round(t / 0.05));
+  };
+  await look_back(4.5);
+  await until("the past of the person", 10, () => card_at(p, 1, 2.25), (title) => kFourth.test(title));
+  assert.equal(await p.get("figure-clearance").innerText(), room, "of that instant");
+  await look_back(3);
+  await until("before the person came", 10, () => card_at(p, 1, 2.25), (title) => title === "");
+  await p.close();
+
+  // The command line makes the same world of the same file.
+  const [file, made] = [join(store.folder, "My square.txt"), join(store.folder, "made.json")];
+  writeFileSync(file, kPeople);
+  execFileSync(binary, ["crowd", file, "--scenario", made]);
+  const kept = await json(server.base, "/scenarios/my_square");
+  assert.deepEqual(JSON.parse(readFileSync(made)), kept);
+  assert.match(execFileSync(binary, ["run", made, "--seed", "1"], { encoding: "utf8" }), /outcome +reached/);
+});
+
+test("people on a phone come by the dialog", { timeout: 120_000 }, async () => {
+  const p = await fresh({ size: phone, touch: true, theme: "light" });
+  const file = join(store.folder, "square.txt");
+  writeFileSync(file, kPeople);
+  await p.get("tune").click();
+  await p.get("sheet").getByTestId("tab-world").click();
+  await p.get("sheet").getByTestId("world-files").setInputFiles([file]);
+  await until("the people", 10, session, (s) => s.scenario.name === "square");
+  await p.get("tune").click();
+  await control({ action: "pause" });
+  await control({ action: "reset" });
+  await until("the beginning", 10, session, (s) => s.tick === 0);
+  await play_to(p, 90);
+  await p.shot("people-phone");
   await p.close();
 });

@@ -4,12 +4,13 @@ import "./style/layout.css";
 import "./style/controls.css";
 import "./style/scene.css";
 import "./style/names.css";
-import "./style/hardware.css";
+import "./style/stop.css";
 import "./style/timeline.css";
 import "./style/people.css";
 import "./style/narrow.css";
 import "./style/short.css";
 import { JSX, render } from "preact";
+import { useState } from "preact/hooks";
 import { App, AppContext, use_app, use_ui } from "./app";
 import { use_listener, use_store } from "./state/store";
 import { lazy } from "./ui/lazy";
@@ -30,12 +31,21 @@ const System = lazy(async () => (await import("./views/system")).System);
 
 const HardwareBar = lazy(async () => (await import("./views/hardware")).HardwareBar);
 const Login = lazy(async () => (await import("./views/login")).Login);
+const Dropped = lazy(async () => (await import("./views/world")).Dropped); // a part that there is anyway
 const Shortcuts = lazy(async () => (await import("./views/shortcuts")).Shortcuts);
 
 function Shell(): JSX.Element {
   const app = use_app();
   const { view, shortcuts, locked } = use_ui("view", "shortcuts", "locked");
   const hardware = use_store(app.ui, (u) => u.session?.source === "hardware");
+  const [dragged, set_dragged] = useState(false);
+  const hold = (e: DragEvent) => { // a browser left to itself opens a dropped file in place of the page
+    if (!e.dataTransfer?.types.includes("Files")) return;
+    e.preventDefault();
+    set_dragged(true);
+  };
+  use_listener("dragover", hold);
+  use_listener("drop", hold);
   use_listener("keydown", (e) => stop_key(app, e), true);
   use_listener("keyup", (e) => stop_key(app, e), true);
   use_listener("keydown", (e) => {
@@ -59,6 +69,7 @@ function Shell(): JSX.Element {
       <Toasts />
       <Spoken />
       <Tips />
+      {dragged && <Dropped />}
       {shortcuts && <Shortcuts />}
       {locked && <Login />}
     </div>

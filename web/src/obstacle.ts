@@ -18,12 +18,16 @@ export interface Obstacle {
   bottom: number;    // [m] above the floor: there is room below it
   low: number;       // [m] top of the ground at x = -length / 2; below 0 in a trench
   path: PathJson | null; // of its reference point, if it moves by itself
+  away: boolean;     // it comes and goes, and no frame has told that it is there now
   /** Optional fields of the JSON, as undo returns them; absent ones are undefined. */
   extra: Pick<ObstacleJson, "reflectivity" | "specular" | "height">;
 }
 
-/** Keys [t, x, y] in seconds and metres of W, linear in between, repeated each `period`. */
-export interface PathJson { period: number; phase?: number; keys: [number, number, number][] }
+/**
+ * Keys [t, x, y] in seconds and metres of W, linear in between, repeated each `period`. One that comes and goes is there
+ * from its first key to its last only.
+ */
+export interface PathJson { period: number; phase?: number; comes_and_goes?: boolean; keys: [number, number, number][] }
 
 /** The JSON form, as in scenario files. */
 export interface ObstacleJson {
@@ -62,6 +66,7 @@ export function obstacle_from_json(json: ObstacleJson): Obstacle {
     low: json.type === "trench" ? -(json.depth ?? 0) : json.type === "step" ? height ?? 0 : json.low ?? 0,
     bottom: json.bottom ?? 0,
     path: json.path ?? null,
+    away: !!json.path?.comes_and_goes,
     extra: { reflectivity, specular, height },
   };
   if (json.type === "wall" && json.from && json.to) {
@@ -76,6 +81,11 @@ export function obstacle_from_json(json: ObstacleJson): Obstacle {
     out.points = json.x === undefined ? world.map((p) => to_child(out.pose, p)) : world;
   }
   return out;
+}
+
+/** Of `obstacles` those that are there now. */
+export function present(obstacles: Obstacle[]): Obstacle[] {
+  return obstacles.filter((o) => !o.away);
 }
 
 /** The JSON that adds this obstacle again, without its id. */
@@ -143,7 +153,7 @@ export function covers(o: Obstacle, p: Point, slack: number): boolean {
 
 /** The obstacle under `p` (W) on top: the last one drawn, and ground only where nothing stands on it. */
 export function topmost(obstacles: Obstacle[], p: Point, slack: number): Obstacle | null {
-  const hits = obstacles.filter((o) => covers(o, p, slack));
+  const hits = present(obstacles).filter((o) => covers(o, p, slack));
   return hits.filter((o) => !is_ground(o)).at(-1) ?? hits.at(-1) ?? null;
 }
 
@@ -152,7 +162,9 @@ export function is_ground(o: Obstacle): boolean {
   return o.kind === "ramp" || o.kind === "step" || o.kind === "trench";
 }
 
+/** Of one that moves by itself the whole way. */
 export function include_obstacle(bounds: Bounds, o: Obstacle): void {
+  for (const [, x, y] of o.path?.keys ?? []) include(bounds, x, y, o.radius);
   if (o.kind === "cylinder") include(bounds, o.pose.x, o.pose.y, o.radius);
   for (const p of outline(o)) include(bounds, p.x, p.y);
 }

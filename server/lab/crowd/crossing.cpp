@@ -18,11 +18,9 @@
 namespace server::crowd {
 namespace {
 
-constexpr double kEdge = 0.5;          // [m] of start and goal inside the rectangle
-constexpr double kLeftOut = 1.5;       // [m] from the robot within which nobody appears
-constexpr double kLastBegin = 60;      // [s] before the end of the recording
-constexpr double kPersonHeight = 1.7;  // [m]
-constexpr double kTouch = 1e-3;        // [m] at which the physics keeps bodies apart
+constexpr double kEdge = 0.5;      // [m] of start and goal inside the rectangle
+constexpr double kLastBegin = 60;  // [s] before the end of the recording
+constexpr double kTouch = 1e-3;    // [m] at which the physics keeps bodies apart
 
 /// The recorded people in the robot's world.
 class Crowd {
@@ -134,9 +132,8 @@ bool judge(Crossing& end,
   return false;
 }
 
-}  // namespace
-
-Way way_of(const Recording& recording, std::size_t k) {
+/// Way `k` at the begin of the recording.
+Way way_through(const Recording& recording, std::size_t k) {
   const algo::Vec2 size = recording.high - recording.low;
   if (size.minCoeff() < 4 * kEdge) {
     throw std::runtime_error(
@@ -146,14 +143,6 @@ Way way_of(const Recording& recording, std::size_t k) {
                     size.y(),
                     4 * kEdge));
   }
-  const double span = recording.until - recording.from - kLastBegin;
-  if (span < 0) {
-    throw std::runtime_error(
-        fmt::format("{} lasts {:.0f} s; the crossings begin up to {:.0f} s before its end",
-                    recording.name,
-                    recording.until - recording.from,
-                    kLastBegin));
-  }
   const algo::Vec2 middle = (recording.low + recording.high) / 2;
   const double heading = std::numbers::pi / 2 * static_cast<double>(k % 4);
   const std::array<algo::Vec2, 4> ways{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
@@ -162,7 +151,27 @@ Way way_of(const Recording& recording, std::size_t k) {
   const algo::Vec2 start = middle - half;
   return {.start_W = {start.x(), start.y(), algo::wrap_angle(heading)},
           .goal_W = middle + half,
-          .begin = recording.from + static_cast<double>(k) * span / (kCrossings - 1)};
+          .begin = recording.from};
+}
+
+}  // namespace
+
+Way first_way(const Recording& recording) {
+  return way_through(recording, 0);
+}
+
+Way way_of(const Recording& recording, std::size_t k) {
+  Way way = way_through(recording, k);
+  const double span = recording.until - recording.from - kLastBegin;
+  if (span < 0) {
+    throw std::runtime_error(
+        fmt::format("{} lasts {:.0f} s; the crossings begin up to {:.0f} s before its end",
+                    recording.name,
+                    recording.until - recording.from,
+                    kLastBegin));
+  }
+  way.begin += static_cast<double>(k) * span / (kCrossings - 1);
+  return way;
 }
 
 Crossing cross(const Recording& recording, const Way& way, const RunSpec& robot, Driver driver) {

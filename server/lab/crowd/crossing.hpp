@@ -14,6 +14,7 @@ inline constexpr double kMostTime = 90;        // [s] of a crossing
 inline constexpr double kGoalReach = 0.3;      // [m] of the true position
 inline constexpr double kMovingSpeed = 0.05;   // [m/s] from which a contact is the robot's
 inline constexpr double kIntrusion = 0.45;     // [m] between hull and disc
+inline constexpr double kLeftOut = 1.5;        // [m] from the robot within which nobody appears
 inline constexpr double kPersonalSpace = 1.2;  // [m] between hull and disc
 inline constexpr double kStandingRoom = 1.0;   // [m] at which the robot that stands still stops
 
@@ -26,6 +27,8 @@ struct Way {
 /// The way of crossing `k`: towards +x, +y, -x, -y in turn. Throws std::runtime_error with a
 /// sentence if the recording is too small or too short for it.
 Way way_of(const Recording& recording, std::size_t k);
+/// The way of crossing 0, also of a recording that is too short for the others.
+Way first_way(const Recording& recording);
 
 enum class Driver : std::uint8_t {
   Controller,  // the scenario's own

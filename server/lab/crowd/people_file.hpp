@@ -13,6 +13,7 @@
 namespace server::crowd {
 
 inline constexpr double kPersonRadius = 0.25;  // [m]
+inline constexpr double kPersonHeight = 1.7;   // [m]
 inline constexpr double kFrameTime = 0.04;     // [s] between two frames of a recording
 
 /// One person, there from the first key to the last, on straight lines in between.

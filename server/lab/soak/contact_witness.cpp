@@ -89,8 +89,9 @@ ContactWitness::ContactWitness(const sim::Scenario& scenario, const algo::RobotS
 void ContactWitness::see(const algo::Observation& observation, const algo::GroundTruth& truth) {
   const double now = observation.stamp;
   for (Mover& mover : movers_) {
-    mover.at_W = scenario_.obstacles[mover.index].path->at(now);
-    set_.move(mover.index, {mover.at_W.x(), mover.at_W.y(), 0});
+    const algo::Pose2 pose_W = sim::pose_at(scenario_.obstacles[mover.index], now);
+    mover.at_W = pose_W.position();
+    set_.move(mover.index, pose_W);
   }
   trail_.push_back({now, truth.pose, observation.odometry.pose});
   if (trail_.size() > kTrail) trail_.pop_front();

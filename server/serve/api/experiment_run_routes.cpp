@@ -124,6 +124,7 @@ json points_json(std::span<const algo::Vec2> points_W) {
 json outlines_json(const sim::Scenario& scenario) {
   json outlines = json::array();
   for (const algo::Obstacle& each : scenario.obstacles) {
+    if (each.path && !each.path->is_there(0)) continue;
     const auto* const cylinder = std::get_if<algo::Cylinder>(&each.shape);
     if (cylinder == nullptr) {
       outlines.push_back({{"corners", points_json(outline_W(each))}});

@@ -63,5 +63,14 @@ TEST(FloorRays, AMovingObstacleIsMetWhereItIs) {
   EXPECT_LT(rays.sense(5, {}, {})[0], 0.2);
 }
 
+TEST(FloorRays, AnObstacleThatIsAwayIsNotMet) {
+  algo::Obstacle visitor{.id = 1, .pose_W = {0.48, 0, 0}, .shape = algo::Box{0.2, 1}};
+  visitor.path = {.period = 10, .keys = {{4, {0.48, 0}}, {6, {0.48, 0}}}, .comes_and_goes = true};
+  FloorRays rays(with(visitor), usual_floor_sensors(0.3));
+  EXPECT_NEAR(rays.sense(3, {}, {})[0], 0.28, 1e-12);
+  EXPECT_LT(rays.sense(5, {}, {})[0], 0.2);
+  EXPECT_NEAR(rays.sense(7, {}, {})[0], 0.28, 1e-12);
+}
+
 }  // namespace
 }  // namespace server::emulate

@@ -38,5 +38,20 @@ TEST(Oracle, AnObstacleThatJumpedIsNotTheRobotsFault) {
   EXPECT_EQ(judge_contact(oncoming(), spec, trail), Contact::Jumped);
 }
 
+/// One who comes and goes is in nobody's way before, and appears from nowhere.
+TEST(Oracle, SomebodyWhoIsAwayIsNotInTheWayAndOneWhoAppearsHasJumped) {
+  const algo::RobotSpec spec{.radius = 0.35, .max_v = 1, .max_omega = 2, .max_acceleration = 2};
+  sim::Scenario scenario = oncoming();
+  scenario.obstacles[0].path = {
+      .period = 20, .keys = {{5, {0.5, 0}}, {8, {0.5, 0}}}, .comes_and_goes = true};
+  const auto trail_to = [](double stamp) {
+    std::vector<Moment> trail;
+    for (int k = 0; k <= 60; ++k) trail.push_back({stamp - 3 + 0.05 * k, {0, 0, 0}, {}});
+    return trail;
+  };
+  EXPECT_EQ(judge_contact(scenario, spec, trail_to(6)), Contact::Jumped);
+  EXPECT_EQ(judge_contact(scenario, spec, trail_to(15)), Contact::Avoidable);
+}
+
 }  // namespace
 }  // namespace server::experiment

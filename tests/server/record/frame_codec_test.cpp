@@ -76,6 +76,8 @@ algo::Telemetry full_telemetry() {
   algo::Obstacle walker{7, {1, 2, 3}, algo::Cylinder{0.25}};
   walker.path = {.period = 12.5, .phase = 0.1, .keys = {{0, {1, 2}}, {3.3, {1.7, 2.1}}}};
   t.requests.push_back(algo::ChangeObstacle{walker});
+  walker.path->comes_and_goes = true;
+  t.requests.push_back(algo::ChangeObstacle{walker});
   t.requests.push_back(algo::MoveObstacle{7, {1.5, 2.5, 0.5}});
   t.requests.push_back(algo::RemoveObstacle{7});
   t.requests.push_back(algo::Joystick{0.5, -0.25, algo::StickMode::Wall});

@@ -138,6 +138,27 @@ TEST(ScenarioJson, MalformedGroundIsRefusedWithTheField) {
               testing::HasSubstr("ramp, step, trench"));
 }
 
+TEST(ScenarioJson, APathMayComeAndGo) {
+  const auto read = [](const std::string& flag) {
+    return obstacle_from_json(json::parse(R"({"type":"cylinder","x":0,"y":0,"radius":0.25,)"
+                                          R"("path":{"period":9,)" +
+                                          flag + R"("keys":[[1,0,0],[3,2,0]]}})"),
+                              "obstacles/0");
+  };
+  const algo::Obstacle person = read(R"("comes_and_goes":true,)");
+  EXPECT_TRUE(person.path->comes_and_goes);
+  EXPECT_EQ(obstacle_from_json(to_json(person), ""), person);
+  EXPECT_FALSE(read("").path->comes_and_goes);
+  EXPECT_FALSE(to_json(read(""))["path"].contains("comes_and_goes"))
+      << "documents stay as they were";
+  try {
+    read(R"("comes_and_goes":1,)");
+    ADD_FAILURE();
+  } catch (const DocumentError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("obstacles/0/path/comes_and_goes"));
+  }
+}
+
 TEST(ScenarioJson, PolygonPointsAreInWorldFrameOrInThatOfAGivenPose) {
   const auto world = obstacle_from_json(
       json::parse(R"({"type":"polygon","points":[[3,3],[4,3],[4,4],[3,4]]})"), "");

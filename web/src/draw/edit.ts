@@ -39,10 +39,10 @@ export function draw_sketch(g: Context, view: View, palette: Palette, points: Po
   }
 }
 
-/** The ways of obstacles that move by themselves. */
+/** The ways of obstacles that move by themselves; of a crowd that comes and goes only the selected one's. */
 export function draw_paths(g: Context, view: View, palette: Palette, obstacles: Obstacle[], selected: number | null): void {
   for (const o of obstacles) {
-    if (!o.path) continue;
+    if (!o.path || (o.path.comes_and_goes && o.id !== selected)) continue;
     g.beginPath();
     trace(g, view, corners_of(o.path));
     stroke(g, o.id === selected ? palette.accent : palette.obstline, 1.5, [6, 5]);

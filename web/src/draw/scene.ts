@@ -1,6 +1,6 @@
 // web/src/draw/scene.ts: the whole scene from above, from the lowest drawing to the uppermost.
 import type { HandGoalJson } from "../contract";
-import { Obstacle, is_ground } from "../obstacle";
+import { Obstacle, is_ground, present } from "../obstacle";
 import { Point, Pose, distance } from "../geometry";
 import { Goal } from "../link/frame";
 import { Columns } from "../state/columns";
@@ -115,7 +115,8 @@ export function draw_scene(g: Context, view: View, palette: Palette,
   if (!overlay.hidden.has(kOwn.mesh.name)) draw_grid(g, view, palette);
   if (!overlay.hidden.has(kOwn.map.name)) maps?.draw_map(g, view, palette);
   const solids: Obstacle[] = [], ground: Obstacle[] = [];
-  for (const o of held_obstacles(scene.obstacles, overlay.draft)) (is_ground(o) ? ground : solids).push(o);
+  const there = present(scene.obstacles);
+  for (const o of held_obstacles(there, overlay.draft)) (is_ground(o) ? ground : solids).push(o);
   const pose = robot_pose(scene);
   const f = scene.frame;
   const on = (key: { name: string }) => !overlay.hidden.has(key.name);
@@ -152,7 +153,7 @@ export function draw_scene(g: Context, view: View, palette: Palette,
   arms?.draw_arm(g, view, palette, scene, overlay);
   if (canvas) for (const layer of above) draw_layer(canvas, layer);
   driver?.draw_wall_words(g, view, palette, scene, overlay.hidden);
-  const held = scene.obstacles.find((o) => o.id === selected);
+  const held = there.find((o) => o.id === selected);
   if (held && overlay.handles && !overlay.draft.moved) draw_handles(g, view, palette, overlay.draft.obstacle ?? held);
   draw_draft(g, view, palette, overlay.draft);
   if (overlay.draft.pose) {

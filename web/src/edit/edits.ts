@@ -109,7 +109,7 @@ export function round_cm(v: number): number {
   return Math.round(v * 100) / 100;
 }
 
-const kBlank = { id: 0, radius: 0, length: 0, width: 0, points: [], height: 1, low: 0, bottom: 0, path: null, extra: {} };
+const kBlank = { id: 0, radius: 0, length: 0, width: 0, points: [], height: 1, low: 0, bottom: 0, path: null, away: false, extra: {} };
 
 export function new_cylinder(x: number, y: number, radius: number): Obstacle {
   return { ...kBlank, kind: "cylinder", pose: { x, y, heading: 0 }, radius };

@@ -284,12 +284,17 @@ function goal_card(scene: SceneState, index: number): Card | null {
 
 function obstacle_card(scene: SceneState, id: number): Card | null {
   const o = scene.obstacles.find((each) => each.id === id);
-  if (!o) return null;
+  if (!o || o.away) return null;
   const moving = scene.frame?.moved.some((m) => m.id === id) ?? false;
   const rows = [position(o.pose), ...size_rows(o), ...(o.bottom > 0 ? [metres("Bottom", o.bottom)] : []), metres("Height", o.height)];
   const radius = o.kind === "cylinder" ? o.radius : Math.min(o.length || 1, o.width || 1) / 2;
-  return { title: obstacle_title(o), note: moving ? "moves by itself" : "", rows, law: null, at: o.pose, height: o.height, radius,
+  return { title: obstacle_title(o), note: moving ? `moves by itself${stay_of(o)}` : "", rows, law: null, at: o.pose, height: o.height, radius,
     long: o.kind === "wall" };
+}
+
+/** When one that comes and goes is here. */
+function stay_of({ path }: Obstacle): string {
+  return path?.comes_and_goes ? `, here from ${fixed(path.keys[0][0], 1)} to ${fixed(path.keys.at(-1)![0], 1)} s` : "";
 }
 
 /** The ground at `at`: its height there, and its slope. */

@@ -95,7 +95,7 @@ function polygon_corners(o: Obstacle): Handle[] {
 
 function path_handles(o: Obstacle): Handle[] {
   const { path } = o;
-  if (!path) return [];
+  if (!path || path.comes_and_goes) return []; // a recording has its own times
   const corners = corners_of(path);
   return corners.map((at, i): Handle => ({
     at, kind: "key", label: "Move a corner of a path",

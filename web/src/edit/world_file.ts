@@ -21,7 +21,7 @@ export function read_worlds(files: GivenFile[]): ScenarioDocument[] {
     return [world_of_map(read_pgm(picture.bytes, picture.name), info, stem(picture.name))];
   }
   const json = of(/\.json$/i);
-  if (!json) throw new Error("Choose a scenario or BARN file (.json), or a map (.pgm and .yaml).");
+  if (!json) throw new Error("Choose a scenario or BARN file (.json), a map (.pgm and .yaml), or one file of recorded people (.txt).");
   let document: unknown;
   try {
     document = JSON.parse(text_of(json));
@@ -72,10 +72,10 @@ function numbers(value: unknown, count: number): boolean {
   return Array.isArray(value) && value.length === count && value.every((v) => Number.isFinite(v));
 }
 
-function text_of(file: GivenFile): string {
+export function text_of(file: GivenFile): string {
   return new TextDecoder().decode(file.bytes);
 }
 
-function stem(file: string): string {
+export function stem(file: string): string {
   return name_of(file.replace(/\.\w+$/, "")) || "world";
 }

@@ -115,7 +115,7 @@ export interface Frame {
   layers: LayerView[];      // a grid of an earlier frame holds
   measures: Measure[];
   readings: ChannelReading[]; // of further sensors; only those new in this tick
-  moved: { id: number; pose: Pose }[]; // obstacles that move by themselves
+  moved: { id: number; pose: Pose }[]; // obstacles that move by themselves and are there
   joints: number[] | null;      // [rad] measured; robots with an arm only, as the next two
   joint_rates: number[];        // [rad/s] measured
   arm: ArmFrame | null;
@@ -286,6 +286,7 @@ function obstacle(o: wire.Obstacle): Obstacle {
     low,
     bottom: o.bottom(),
     path: path(o.path()),
+    away: false,
     extra: {},
   };
 }
@@ -293,7 +294,7 @@ function obstacle(o: wire.Obstacle): Obstacle {
 function path(p: wire.ObstaclePath | null): PathJson | null {
   if (!p) return null;
   const keys = list(p.keysLength() / 3, (i) => [p.keys(3 * i)!, p.keys(3 * i + 1)!, p.keys(3 * i + 2)!]);
-  return { period: p.period(), phase: p.phase(), keys: keys as PathJson["keys"] };
+  return { period: p.period(), phase: p.phase(), comes_and_goes: p.comesAndGoes(), keys: keys as PathJson["keys"] };
 }
 
 function wanted(g: wire.SetGoal): Goal {

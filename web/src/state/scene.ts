@@ -191,11 +191,14 @@ export function hold_time(name: string): number {
   return name === kInclination || /^(sonar|infrared) /.test(name) ? kReadingHolds : Infinity;
 }
 
-/** The obstacles with the poses that `f` brings; the same list if it brings none. */
+/** The obstacles with the poses that `f` brings, and without those that come and go and are not in it. */
 function moved_by_themselves(obstacles: Obstacle[], f: Frame | null): Obstacle[] {
-  if (!f || f.moved.length === 0) return obstacles;
+  if (!f || (f.moved.length === 0 && !obstacles.some((o) => o.path?.comes_and_goes))) return obstacles;
   const places = new Map(f.moved.map((m) => [m.id, m.pose]));
-  return obstacles.map((o) => ({ ...o, pose: places.get(o.id) ?? o.pose }));
+  return obstacles.map((o) => {
+    const pose = places.get(o.id);
+    return { ...o, pose: pose ?? o.pose, away: !pose && !!o.path?.comes_and_goes };
+  });
 }
 
 /** The obstacles after `request` as a new list; the same list if it changes nothing. */

@@ -99,7 +99,7 @@ export function SceneThree(props: { insets: () => Insets; chase?: boolean; on_ab
       onPointerMove={(e) => probe.moved(place(e), e.buttons === 0 ? e.pointerType : "drag")}
       onPointerUp={(e) => probe.released(place(e), e.pointerType)}
       onPointerLeave={() => probe.left()}>
-      <Inspector scene={app.shown} probe={probe} box={() => box.current} eye={eye} shown={() => app.ui.value}
+      <Inspector scene={() => app.shown} probe={probe} box={() => box.current} eye={eye} shown={() => app.ui.value}
         insets={props.insets} resting={() => world.current !== null} selection={() => null} crosshair={() => null} />
       {!props.chase && <GizmoWords handle={() => world.current?.handle ?? null} />}
       {!props.chase && <button class={`follow small ${follow ? "on" : ""}`} aria-pressed={follow}

@@ -10,7 +10,7 @@ import { Eye } from "../edit/inspect";
 import { Point, distance, to_parent } from "../geometry";
 import { height_at, tilt_of } from "../ground";
 import { Place, kScanHeight } from "../layer";
-import { is_ground } from "../obstacle";
+import { is_ground, present } from "../obstacle";
 import { sweep_age } from "../state/age";
 import { kOwn, visible_layers } from "../state/layers";
 import { drawing } from "../state/meter";
@@ -227,7 +227,7 @@ export class World3 {
     clear(this.statics_);
     const p = this.palette_;
     if (mesh) this.statics_.add(grid(p, beside_holes));
-    for (const o of scene.obstacles) {
+    for (const o of present(scene.obstacles)) {
       const chosen = selection?.kind === "obstacle" && selection.id === o.id;
       if (!is_ground(o)) this.statics_.add(solid(o, p, chosen));
       else if (hills) this.statics_.add(ground(o, p, chosen));

@@ -182,7 +182,7 @@ export function SceneCanvas(props: CanvasProps): JSX.Element {
         show_cards();
       }}
       onContextMenu={(e) => e.preventDefault() /* the right button pans */} />
-    {cards && <Inspector scene={props.scene()} probe={probe} box={() => element.current} eye={eye}
+    {cards && <Inspector scene={() => latest.current.scene()} probe={probe} box={() => element.current} eye={eye}
       shown={() => latest.current.overlay()} insets={() => latest.current.insets()}
       resting={() => element.current !== null && latest.current.cursor === "pan" && !gestures.busy}
       selection={() => latest.current.overlay().selection}

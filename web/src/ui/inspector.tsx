@@ -22,7 +22,7 @@ const kRing = 9;         // [px] round a small thing
 const kLargest = 90;     // [px] of a thing that its card does not cover
 
 export interface InspectorProps {
-  scene: SceneState;
+  scene: () => SceneState;       // as it is drawn now: live, or the past
   probe: Probe;
   box: () => HTMLElement | null;  // of the scene
   eye: (px: Point, slack: number) => Eye | null;
@@ -35,14 +35,15 @@ export interface InspectorProps {
 
 export function Inspector(props: InspectorProps): JSX.Element {
   use_pulse(100);
+  const scene = props.scene();
   const find = (px: Point, slack: number) => {
     const eye = props.eye(px, slack);
-    return eye && thing_at(props.scene, props.shown(), eye);
+    return eye && thing_at(scene, props.shown(), eye);
   };
   const crosshair = props.resting() ? props.crosshair() : null;
   const found = props.resting() ? props.probe.thing(crosshair, find) : null;
   const thing = found && !is_selected(found, props.selection()) ? found : null;
-  const card = thing && card_of(props.scene, thing);
+  const card = thing && card_of(scene, thing);
   const said = use_said(card && thing ? thing_key(thing) : "", () => (card ? card_words(card) : ""));
   return (
     <>

@@ -1,11 +1,16 @@
 // web/src/views/hardware.tsx: real hardware: the bar that every view shows, its devices, and how
 // well the loop keeps its period.
 import { JSX } from "preact";
+import css from "../style/hardware.css?text";
 import { use_app, use_ui } from "../app";
 import { DeviceInfo, HardwareInfo } from "../contract";
 import { Facts } from "../ui/controls";
 import { Guard } from "../ui/guard";
+import { adopt } from "../ui/sheet";
 import { titled, watchers_words } from "../words";
+import { disarmed_words } from "./hardware_words";
+
+adopt(css);
 
 /** A bar under the top bar: why the wheels stand still or may turn, and the Arm button. */
 export function HardwareBar(): JSX.Element | null {
@@ -25,12 +30,6 @@ export function HardwareBar(): JSX.Element | null {
       {hardware && <Guard need="operator"><ArmButton armed={armed} /></Guard>}
     </div>
   );
-}
-
-/** When the robot was disarmed, and why, unless `shown` says so already. */
-export function disarmed_words(disarmed: { why: string; at: string }, shown: string): string {
-  const at = new Date(disarmed.at).toLocaleTimeString();
-  return `Disarmed at ${at}${shown === disarmed.why ? "." : `: ${disarmed.why}`}`;
 }
 
 /** The robot cannot move before someone has pressed it. */

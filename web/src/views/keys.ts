@@ -6,7 +6,7 @@ import { dragged_obstacle, is_ground_tool, is_sketch } from "../edit/drawn";
 import { Point, radians, wrap_angle } from "../geometry";
 import { Selection } from "../draw/scene";
 import { Goal } from "../link/frame";
-import { obstacle_title } from "../obstacle";
+import { obstacle_title, present } from "../obstacle";
 import { use_listener } from "../state/store";
 import type { Hand } from "./drive";
 
@@ -152,7 +152,7 @@ function select_next(app: App): void {
   const { goal, route, obstacles } = app.scene;
   const goals: Selection[] = route.goals.length > 1 ? route.goals.map((_, index) => ({ kind: "goal", index }))
     : goal ? [{ kind: "goal" }] : [];
-  const all: Selection[] = [...goals, ...obstacles.map((o): Selection => ({ kind: "obstacle", id: o.id }))];
+  const all: Selection[] = [...goals, ...present(obstacles).map((o): Selection => ({ kind: "obstacle", id: o.id }))];
   const now = JSON.stringify(app.ui.value.selection);
   const next = all[all.findIndex((s) => JSON.stringify(s) === now) + 1] ?? null;
   app.ui.set({ selection: next });

@@ -26,7 +26,8 @@ const rise = (name: string): FieldInfo => ({ ...length(name), step: 0.01, digits
 /** The fields of an obstacle of this kind. */
 function fields_of(o: Obstacle): FieldInfo[] {
   if (o.path) {
-    return [...(o.kind === "cylinder" ? [length("radius")] : []), { name: "speed", label: "speed", unit: "m/s", min: 0 }];
+    return [...(o.kind === "cylinder" ? [length("radius")] : []),
+      ...(o.path.comes_and_goes ? [] : [{ name: "speed", label: "speed", unit: "m/s", min: 0 }])];
   }
   switch (o.kind) {
     case "cylinder":
@@ -78,7 +79,7 @@ function with_values(o: Obstacle, v: Values, typed: (name: string) => boolean): 
 
 /** What the title leaves out. */
 function measure_of(o: Obstacle): string {
-  if (o.path) return `walks ${speed_of(o.path).toFixed(2)} m/s`;
+  if (o.path) return `${o.away ? "away, " : ""}walks ${speed_of(o.path).toFixed(2)} m/s`;
   if (o.kind === "wall") return `${o.length.toFixed(2)} m long`;
   if (o.kind === "ramp") return `${fixed(degrees(slope_of(o)), 1)}°`;
   return o.kind === "polygon" ? `${o.points.length} corners` : "";

@@ -35,7 +35,7 @@ export function Figures(): JSX.Element {
   const f = app.shown.frame;
   const state = looking ? frame_word(f) : state_word(f, session, open);
   const drives = session?.robot.drives ?? true;
-  const clearance = shown_clearance(app.scene, session?.source === "simulation");
+  const clearance = shown_clearance(app.shown, session?.source === "simulation");
   return <>
     <div class="stats" role="group" aria-label="Figures">
       <Stat of={clearance} value={clearance.value} beyond={clearance.beyond} name="clearance" />

@@ -11,6 +11,8 @@ import { adopt } from "../ui/sheet";
 import { fixed } from "../words";
 import { WorldFiles } from "./world_files";
 
+export { Dropped } from "./drop";
+
 adopt(css);
 
 const kPulse = 300; // [ms]

@@ -1,15 +1,17 @@
 // web/src/views/world_files.tsx: saves the world, opens, copies and deletes one's own, imports and exports.
 import { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
-import { App, use_app, use_ui } from "../app";
+import { use_app, use_ui } from "../app";
 import { ScenarioDocument } from "../contract";
+import { import_files } from "../edit/import";
 import { map_of_world } from "../edit/map_file";
-import { GivenFile, name_of, read_worlds } from "../edit/world_file";
+import { name_of } from "../edit/world_file";
 import * as rest from "../link/rest";
 import { session_path } from "../link/session";
 import { download } from "../ui/download";
 import { Dialog, Pick, Problem, use_problem } from "../ui/controls";
 import { icons } from "../ui/icons";
+import { WhichWorld } from "./which_world";
 
 export function WorldFiles(): JSX.Element {
   const app = use_app();
@@ -111,55 +113,21 @@ function Open(props: { on_close: () => void }): JSX.Element {
   );
 }
 
-async function given(files: FileList): Promise<GivenFile[]> {
-  return Promise.all([...files].map(async (f) => ({ name: f.name, bytes: new Uint8Array(await f.arrayBuffer()) })));
-}
-
-/** A name that is not taken, so that an import replaces nothing. */
-function free_name(app: App, name: string): string {
-  const taken = (n: string) => app.ui.value.scenarios.some((s) => s.name === n);
-  let fresh = name;
-  for (let i = 2; taken(fresh); ++i) fresh = `${name.slice(0, 60)}_${i}`;
-  return fresh;
-}
-
 function Import(): JSX.Element {
   const app = use_app();
   const input = useRef<HTMLInputElement>(null);
   const [several, set_several] = useState<ScenarioDocument[] | null>(null);
-  const open = async (world: ScenarioDocument) => {
-    set_several(null);
-    const name = free_name(app, world.name);
-    const saved = await app.attempt(rest.put(`/scenarios/${name}`, { ...world, name }));
-    if (saved === null) return;
-    await app.fetch_lists();
-    await app.editor.load({ scenario: name });
-  };
-  const read = async (files: FileList) => {
-    try {
-      const worlds = read_worlds(await given(files));
-      if (worlds.length === 1) await open(worlds[0]);
-      else set_several(worlds);
-    } catch (error) {
-      app.toast("bad", error instanceof Error ? error.message : String(error));
-    }
-  };
   return (
     <>
-      <button class="ghost" data-testid="world-import" title="A scenario or BARN file (.json), or a map (.pgm and .yaml)"
+      <button class="ghost" data-testid="world-import" title="A scenario or BARN file (.json), a map (.pgm and .yaml), or recorded people (.txt)"
         onClick={() => input.current?.click()}>Import</button>
-      <input ref={input} type="file" multiple hidden accept=".json,.pgm,.yaml,.yml" aria-label="Files of a world" data-testid="world-files"
+      <input ref={input} type="file" multiple hidden accept=".json,.pgm,.yaml,.yml,.txt,.csv" aria-label="Files of a world" data-testid="world-files"
         onChange={(e) => {
           const { files } = e.currentTarget;
-          if (files && files.length > 0) void read(files);
+          if (files && files.length > 0) void import_files(app, files).then(set_several);
           e.currentTarget.value = "";
         }} />
-      {several && <Dialog title="Which world?" name="which-dialog" on_close={() => set_several(null)}>
-        <p>The file holds {several.length} worlds.</p>
-        <Pick label="World" name="which-world" value="" choices={[{ name: "", label: "Choose one" },
-          ...several.map((w, i) => ({ name: String(i), label: w.title ?? w.name }))]}
-          on_pick={(i) => i !== "" && void open(several[Number(i)])} />
-      </Dialog>}
+      {several && <WhichWorld worlds={several} on_close={() => set_several(null)} />}
     </>
   );
 }

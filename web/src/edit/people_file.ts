@@ -1,0 +1,112 @@
+// web/src/edit/people_file.ts: a world of people who were recorded on a square or in a street. The server makes the
+// same one of the same file (server/lab/crowd/crowd_scenario.cpp).
+import { ScenarioDocument } from "../contract";
+import { Bounds, Point, distance, empty_bounds, include } from "../geometry";
+import { ObstacleJson, PathJson } from "../obstacle";
+import { kWalkerRadius } from "./edits";
+import { kMostObstacles } from "./map_file";
+
+export const kFrameTime = 0.04;  // [s] between two frames of a recording
+const kPersonHeight = 1.7;       // [m]
+const kFarthest = 1e4;           // [m] of a place from the origin
+const kLastFrame = 1e9;          // of a recording
+const kMostKeys = 10_000;        // of a path
+const kEdge = 0.5;               // [m] of start and goal inside the rectangle of all places
+const kLeftOut = 1.5;            // [m] from the robot's start within which nobody stands
+const kUntilAgain = 5;           // [s] from the end of the recording until it begins anew
+
+/** One person: there from the first key to the last, on straight lines in between. */
+export interface Walker { id: string; keys: PathJson["keys"] }
+
+/** The people in lines `frame id x y` [m]; throws a sentence that names the file and the line. */
+export function read_people(text: string, file: string): Walker[] {
+  const walkers = new Map<string, Walker>();
+  text.split("\n").forEach((line, i) => {
+    const words = line.split(/[\s,]+/).filter((word) => word !== "");
+    if (words.length === 0) return;
+    const at = `${file}, line ${i + 1}`;
+    if (words.length !== 4) throw new Error(`${at}: ${words.length} words instead of "frame id x y".`);
+    const [frame, x, y] = [number_of(words[0], kLastFrame), number_of(words[2], kFarthest), number_of(words[3], kFarthest)];
+    if (frame === null) throw new Error(`${at}: "${words[0]}" is no number of a frame.`);
+    if (x === null || y === null) throw new Error(`${at}: "${words[2]} ${words[3]}" is no place in metres.`);
+    const walker = walkers.get(words[1]) ?? { id: words[1], keys: [] };
+    walkers.set(words[1], walker);
+    walker.keys.push([frame * kFrameTime, x, y]);
+    if (walker.keys.length > kMostKeys) throw new Error(`${at}: person ${words[1]} has more than ${kMostKeys} places.`);
+  });
+  if (walkers.size === 0) throw new Error(`${file} holds nobody.`);
+  for (const { id, keys } of walkers.values()) {
+    keys.sort(([a], [b]) => a - b);
+    const twice = keys.find(([t], k) => k > 0 && t === keys[k - 1][0]);
+    if (twice) throw new Error(`${file}: person ${id} is at two places in frame ${Math.round(twice[0] / kFrameTime)}.`);
+  }
+  return [...walkers.values()];
+}
+
+/** The number that is the whole of `word`, within +-`most`. */
+function number_of(word: string, most: number): number | null {
+  const value = /^-?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(word) ? Number(word) : NaN;
+  return Math.abs(value) <= most ? value : null;
+}
+
+/**
+ * A world in which they come, walk and go, and the robot of `robot` crosses their place towards +x. Nobody is in it who
+ * is seen once only, or who stands beside the robot at the beginning. Throws a sentence.
+ */
+export function world_of_people(walkers: Walker[], file: string, robot: ScenarioDocument): ScenarioDocument {
+  const title = file.replace(/\.\w+$/, "");
+  const [from, until] = span_of(walkers);
+  const { start, goal } = way_through(bounds_of(walkers), title);
+  const beside = ({ keys: [[t, x, y]] }: Walker) => t === from && distance({ x, y }, start) < kLeftOut;
+  const period = to_thousandth(until - from + kUntilAgain);
+  const people = walkers.filter((w) => w.keys.length > 1 && !beside(w));
+  if (people.length === 0) throw new Error(`${file}: nobody in it walks.`);
+  if (people.length > kMostObstacles) throw new Error(`${file} holds ${people.length} people; a world holds ${kMostObstacles}.`);
+  const { waypoints: _waypoints, robots: _robots, ...same } = robot;
+  return {
+    ...same, name: "", title: `People of ${title}`,
+    description: `${people.length} people come, walk and go as they were recorded; they do not see the robot. `
+      + `After ${period.toFixed(0)} s the recording begins anew.`,
+    start: { x: to_thousandth(start.x), y: to_thousandth(start.y), heading: 0 },
+    goal: { x: to_thousandth(goal.x), y: to_thousandth(goal.y) },
+    obstacles: people.map(({ keys }, i) => person(i + 1, keys, from, period)),
+  };
+}
+
+function person(id: number, keys: PathJson["keys"], from: number, period: number): ObstacleJson {
+  const rounded = keys.map(([t, x, y]): [number, number, number] => [to_thousandth(t - from), to_thousandth(x), to_thousandth(y)]);
+  const [[, x, y]] = rounded;
+  return { id, type: "cylinder", x, y, radius: kWalkerRadius, height: kPersonHeight, path: { period, comes_and_goes: true, keys: rounded } };
+}
+
+/** To a millimetre or millisecond: the recordings are no finer, and worlds stay small. */
+function to_thousandth(value: number): number {
+  return Math.floor(value * 1000 + 0.5) / 1000;
+}
+
+/** [s] */
+function span_of(walkers: Walker[]): [number, number] {
+  let [from, until] = [Infinity, -Infinity];
+  for (const { keys } of walkers) {
+    from = Math.min(from, keys[0][0]);
+    until = Math.max(until, keys[keys.length - 1][0]);
+  }
+  return [from, until];
+}
+
+function bounds_of(walkers: Walker[]): Bounds {
+  const bounds = empty_bounds();
+  for (const { keys } of walkers) for (const [, x, y] of keys) include(bounds, x, y);
+  return bounds;
+}
+
+/** Through the middle of their places towards +x. */
+function way_through(b: Bounds, title: string): { start: Point; goal: Point } {
+  const [width, depth] = [b.max_x - b.min_x, b.max_y - b.min_y];
+  if (Math.min(width, depth) < 4 * kEdge) {
+    throw new Error(`${title}: its people stay within ${width.toFixed(1)} x ${depth.toFixed(1)} m; a crossing needs ${4 * kEdge} m.`);
+  }
+  const [x, y] = [(b.min_x + b.max_x) / 2, (b.min_y + b.max_y) / 2];
+  const half = Math.abs(width) / 2 - kEdge;
+  return { start: { x: x - half, y }, goal: { x: x + half, y } };
+}
