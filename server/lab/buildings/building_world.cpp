@@ -79,9 +79,10 @@ class Builder {
     obstacles().push_back(obstacle);
   }
 
-  /// A place in any cell with `room` [m] around it.
+  /// A place in any cell with `room` [m] around it; the middle of a cell if narrow cells have no
+  /// such place.
   Vec2 anywhere(const GridOracle& oracle, double room) {
-    Vec2 p_W = plan_.middle({0, 0});
+    Vec2 p_W{0, 0};
     for (int k = 0; k < kPlaces; ++k) {
       const auto column =
           static_cast<int>(below(random_, static_cast<std::size_t>(plan_.columns())));
@@ -90,6 +91,7 @@ class Builder {
       const double u = random_.uniform();
       const double v = random_.uniform();
       const Vec2 at_W = plan_.low({column, row}) + size.cwiseProduct(Vec2(u, v));
+      p_W = plan_.middle({column, row});
       if (oracle.distance(at_W) < room) continue;
       p_W = at_W;
       break;
