@@ -78,8 +78,8 @@ TEST(Buildings, AreTheSameForTheSameSeedAndValidScenarios) {
   EXPECT_NE(to_json(building_of(1, "strip").scenario), to_json(building_of(2, "strip").scenario));
 }
 
-/// Its cells are as wide as its doors: start and goal once fell on one place, and the thing about the
-/// goal had a negative length.
+/// Its cells are as wide as its doors: start and goal once fell on one place, and the thing about
+/// the goal had a negative length.
 TEST(Buildings, OfNarrowCellsHaveAGoalAwayFromTheStart) {
   const sim::Scenario world = building_of(197, "strip").scenario;
   EXPECT_EQ(to_json(scenario_from_json(to_json(world))), to_json(world));
