@@ -352,7 +352,7 @@ test("worlds are imported and exported, copied, deleted and brought back; bad fi
   await until("the map again", 10, session, (s) => s.scenario.name === "hall");
   await p.get("world-name").fill("Case1"); // built in: that it cannot be replaced is said, not asked
   await p.get("world-save").click();
-  await until("it says why", 5, () => p.get("world-problem").textContent().catch(() => ""), (w) => /built in/.test(w));
+  await until("it says why", 20, () => p.get("world-problem").textContent().catch(() => ""), (w) => /built in/.test(w));
   assert.equal(await p.get("replace-dialog").count(), 0);
   p.forgive(/409/);
   await p.get("world-name").fill("hall");
