@@ -71,10 +71,10 @@ def comedi(program):
 class Devices:
     """`tautline emulate robot` with further `options`, and its record."""
 
-    def __init__(self, program, folder, base="roboteq", *options):
+    def __init__(self, program, folder, base="roboteq", *options, scenario="exp4"):
         self.record = os.path.join(folder, "truth")
         self.process = subprocess.Popen(
-            [program, "emulate", "robot", "--links", folder, "--base", base, "--scenario", "exp4",
+            [program, "emulate", "robot", "--links", folder, "--base", base, "--scenario", scenario,
              "--record", self.record,
              *(["--watchdog", str(WATCHDOG[base])] if base == "analog" else []), *options],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
@@ -85,13 +85,17 @@ class Devices:
         self.process.stdin.write(f"{line}\n".encode())
         self.process.stdin.flush()
 
-    def scanner(self):
-        """The emulator's state of its scanner."""
+    def truth(self):
+        """The true state of the emulator's world and devices."""
         self.tell("truth")
         while True:
             line = self.process.stdout.readline().decode()
             if line.startswith("{"):
-                return json.loads(line)["scanner"]
+                return json.loads(line)
+
+    def scanner(self):
+        """The emulator's state of its scanner."""
+        return self.truth()["scanner"]
 
     def end(self):
         self.process.terminate()
