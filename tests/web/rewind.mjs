@@ -140,6 +140,7 @@ test("an earlier instant has its own world, and an edit returns to the live run"
         return [...canvas.getContext("2d").getImageData(px * k, py * k, 1, 1).data].join();
       }, [at.x - box.x, at.y - box.y]);
     };
+    await p.draws((await json(base, "/session")).tick); // a page that lags still shows the obstacle
     const bare = await pixel(3, 2);
     await seek((added + removed) / 2);
     // Edits of ticks that were passed over come with the record.
