@@ -9,9 +9,11 @@ namespace algo {
 namespace {
 
 constexpr double kShare = 0.15;  // share of a force per sweep: 0.5 overshoots, and the robot sways
-constexpr double kMostPush = 0.06;  // [m] in one sweep
-constexpr double kNearReach = 4.5;  // [m] of the strip that every sweep moves
-constexpr double kHit = 0.05;       // [m] from a surface where a march ends
+constexpr double kMostPush = 0.06;    // [m] in one sweep
+constexpr double kNearReach = 4.5;    // [m] of the strip that every sweep moves
+constexpr double kHit = 0.05;         // [m] from a surface where a march ends
+constexpr double kNarrow = 0.08;      // [m] more than the least clearance: centred on the hits
+constexpr std::size_t kCentred = 12;  // nodes that may be
 
 /// [m] Free distance from `p_W` along the unit vector `along`, up to `most`.
 double march(const LocalMap& map, const Vec2& p_W, const Vec2& along, double most) {
@@ -121,6 +123,30 @@ void NodeStrip::relax(const LocalMap& map, const StripSettings& settings, int sw
     const std::size_t end = sweep % 5 == 0 ? nodes_.size() - 1 : near;
     for (std::size_t i = 1; i < end; ++i) push(map, settings, i);
   }
+}
+
+void NodeStrip::centre(const LocalMap& map, const StripSettings& settings) {
+  const std::size_t end = std::min(nodes_.size(), kCentred + 2);
+  for (std::size_t i = 1; i + 1 < end; ++i) centre(map, settings.least_clearance + kNarrow, i);
+}
+
+/// Moves node `i` across the strip to the middle between the nearest hits on its two sides, if both
+/// are nearer than `room` [m].
+void NodeStrip::centre(const LocalMap& map, double room, std::size_t i) {
+  const Vec2 along = nodes_[i + 1].position_W - nodes_[i - 1].position_W;
+  Vec2& p_W = nodes_[i].position_W;
+  if (along.squaredNorm() < 1e-6 || map.distance(p_W) > room) return;
+  const Vec2 left = Vec2{-along.y(), along.x()} / along.norm();
+  const double reach = room + kMostPush;
+  double on_left = reach;
+  double on_right = reach;
+  map.each_near(p_W, reach, [&](const Vec2& hit_W) {
+    const Vec2 way = hit_W - p_W;
+    double& least = way.dot(left) > 0 ? on_left : on_right;
+    least = std::min(least, way.norm());
+  });
+  if (std::max(on_left, on_right) >= reach) return;
+  p_W += std::clamp((on_left - on_right) / 2, -kMostPush, kMostPush) * left;
 }
 
 double NodeStrip::broken_at(const LocalMap& map, const StripSettings& settings) const {

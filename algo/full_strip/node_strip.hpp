@@ -43,6 +43,9 @@ class NodeStrip {
   void follow(const Vec2& robot_W);
   /// Runs `sweeps` rounds of forces over the first `reach` [m] of the strip; the rest gets fewer.
   void relax(const LocalMap& map, const StripSettings& settings, int sweeps);
+  /// Where it is narrow, puts the next nodes into the middle, by the hits themselves: the forces
+  /// err by a part of a cell, and pull a corner's nodes inwards.
+  void centre(const LocalMap& map, const StripSettings& settings);
   /// [m] Distance from the robot to the first node without room; negative if there is none.
   double broken_at(const LocalMap& map, const StripSettings& settings) const;
 
@@ -58,6 +61,7 @@ class NodeStrip {
  private:
   void space_out();
   void push(const LocalMap& map, const StripSettings& settings, std::size_t i);
+  void centre(const LocalMap& map, double room, std::size_t i);
 
   Recycled<Node> nodes_{};
   Recycled<Vec2> line_{};  // workspace of space_out()

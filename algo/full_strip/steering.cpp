@@ -8,8 +8,9 @@ namespace algo {
 namespace {
 
 constexpr double kTimeConstant = 0.1;  // [s]
-constexpr double kOtherSide = 0.1;     // [rad/s] a slower turn to the other side is not worth it
-constexpr double kSided = 0.02;        // [rad/s] a slower command has no side
+constexpr double kOtherSide = 0.1;     // [rad/s] a slower turn to the other side is no turn,
+constexpr double kTrim = 0.04;         // [rad/s] but a correction of at most this much
+constexpr double kSided = 0.045;       // [rad/s] a slower command has no side
 constexpr double kRounding = 1e-9;     // of the jerk, relative
 
 /// `now`, which changed by `rate` a second, one tick nearer to `wanted`.
@@ -39,8 +40,8 @@ CommandCourse followed(const CommandCourse& course, const Twist2& command, doubl
 Twist2 steadied(const CommandCourse& course, const Twist2& wanted, double dt) {
   const double last = course.command.omega;
   const double omega = last + (wanted.omega - last) * std::min(1.0, dt / kTimeConstant);
-  const bool worth_it = omega * course.side >= 0 || std::abs(omega) >= kOtherSide;
-  return {wanted.v, worth_it ? omega : 0};
+  const bool turns = omega * course.side >= 0 || std::abs(wanted.omega) >= kOtherSide;
+  return {wanted.v, turns ? omega : std::clamp(omega, -kTrim, kTrim)};
 }
 
 Twist2 ramped_turn(const CommandCourse& course,

@@ -107,6 +107,7 @@ void StripRoute::stretch(const LocalMap& map, const Vec2& here_W, double now) {
   if (strip_.empty()) return;
   strip_.follow(here_W);
   strip_.relax(map, settings_.strip, kSweeps);
+  strip_.centre(map, settings_.strip);
   broken_at_ = strip_.broken_at(map, settings_.strip);
   if (broken_at_ >= 0) next_plan_ = std::min(next_plan_, now);
 }
@@ -221,6 +222,7 @@ void StripRoute::take_plan(const PlanWorld& world, const Vec2& here_W) {
   candidate_.lay(line_W_);
   candidate_.follow(here_W);
   candidate_.relax(world.map, settings_.strip, kSweepsNew);
+  candidate_.centre(world.map, settings_.strip);
   if (candidate_.broken_at(world.map, settings_.strip) >= 0) {
     // Relaxing moved it off its way: take the plan as it is.
     candidate_.lay(line_W_);

@@ -23,12 +23,15 @@ constexpr double kArcPerSpeed = 1.0;   // [rad per m/s] and more with speed
 constexpr std::array<double, 5> kShares{1, 0.75, 0.5, 0.3, 0.15};
 constexpr double kSlowShare = 0.4;     // of the speed: slower motions
 constexpr double kSlowMargin = 0.022;  // [m] need less room
+constexpr double kCloseAhead = 0.16;   // [m] ahead on the strip, their point to steer for
 constexpr double kFloor = 0.02;  // [m] below it only an escape is tried; above a scanner's error
 constexpr double kStepSlack = 0.002;    // [m] a position may be this much nearer than the last
 constexpr double kReverseSpeed = 0.24;  // [m/s]
 
-/// [m] Distance ahead of the robot of the point it steers for, at speed `v`.
-double lookahead(double v) {
+/// [m] Distance ahead of the robot of the point it steers for, at speed `v` [m/s] and `share` of
+/// the strip's speed. A slow motion keeps close to the strip, and cuts no corner.
+double lookahead(double v, double share) {
+  if (share < kSlowShare) return kCloseAhead;
   return std::clamp(0.3 + 0.4 * std::abs(v), 0.35, 1.0);
 }
 
@@ -85,7 +88,7 @@ Twist2 VelocityStage::pursue(const StageInput& in,
                              const MotionState& state,
                              double s,
                              double share) const {
-  const double ahead = lookahead(state.twist.v);
+  const double ahead = lookahead(state.twist.v, share);
   const Vec2 aim = to_child(state.pose_W, in.strip->at(s + ahead));
   const double length = aim.norm();
   if (length < 1e-6) return {};
@@ -126,7 +129,7 @@ bool VelocityStage::admissible(const StageInput& in,
     course = followed(course, command, in.dt);
     if (k == 0) {
       first = command;
-      aim_W = in.strip->at(s + lookahead(state.twist.v));
+      aim_W = in.strip->at(s + lookahead(state.twist.v, share));
     }
     const Vec2 before = state.pose_W.position();
     state = advanced(state, command, in.limits, in.dt);
@@ -162,7 +165,7 @@ std::optional<Twist2> VelocityStage::follow(const StageInput& in, Weighing& out)
 /// A disc at rest may turn towards the strip however close things are: its outline stays the same.
 std::optional<Twist2> VelocityStage::turned_in_place(const StageInput& in) const {
   if (!hull_.is_round() || in.state.twist.v != 0) return std::nullopt;
-  const Vec2 aim = to_child(in.state.pose_W, in.strip->at(lookahead(0)));
+  const Vec2 aim = to_child(in.state.pose_W, in.strip->at(lookahead(0, kShares[0])));
   const double error = std::atan2(aim.y(), aim.x());
   if (std::abs(error) < kFacing) return std::nullopt;
   const double w_max = in.limits.max_omega;

@@ -43,15 +43,21 @@ TEST(Steering, TremblingAboutATurnIsDamped) {
   for (std::size_t i = 40; i < omega.size(); ++i) EXPECT_NEAR(omega[i], 0.4, 0.06);
 }
 
-TEST(Steering, ASlightTurnToTheOtherSideIsNotWorthIt) {
-  const auto omega =
-      steered({0.5,   0.5,   0.5,   0.5,   -0.05, -0.05, -0.05, -0.05, -0.05, -0.05,
-               -0.05, -0.05, -0.05, -0.05, -0.05, -0.05, -0.05, -0.05, -0.05, -0.05});
-  EXPECT_EQ(omega.back(), 0);
-  for (const double each : omega) EXPECT_GE(each, 0);
+/// A turn of 0.5 rad/s, then one of `other` for a second.
+double steered_back(double other) {
   std::vector<double> turns(20, 0.5);
-  turns.insert(turns.end(), 40, -0.5);
-  EXPECT_NEAR(steered(turns).back(), -0.5, 1e-3);
+  turns.insert(turns.end(), 40, other);
+  return steered(turns).back();
+}
+
+TEST(Steering, ASlightTurnToTheOtherSideIsACorrection) {
+  EXPECT_NEAR(steered_back(-0.02), -0.02, 1e-3);
+  EXPECT_EQ(steered_back(-0.08), -0.04);
+}
+
+/// A robot in a narrow lane once drifted into the wall: its corrections were held back.
+TEST(Steering, ARealTurnToTheOtherSideIsReached) {
+  for (const double other : {-0.1, -0.2, -0.5}) EXPECT_NEAR(steered_back(other), other, 1e-3);
 }
 
 TEST(Steering, TheSpeedStaysAsWanted) {
