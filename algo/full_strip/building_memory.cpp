@@ -12,6 +12,7 @@ namespace {
 constexpr std::uint8_t kDoubtHere = 8;    // raised by a mixed beam where it ends,
 constexpr std::uint8_t kDoubtBeside = 4;  // and in the cells around: such ends lie far apart
 constexpr std::uint8_t kMostDoubts = 40;
+constexpr int kNearSteps = static_cast<int>(BuildingMemory::kNear / BuildingMemory::kCoarse);
 constexpr std::size_t kTileCount = std::size_t{BuildingMemory::kTiles} * BuildingMemory::kTiles;
 
 }  // namespace
@@ -38,6 +39,7 @@ BuildingMemory::Tile& BuildingMemory::get(int column, int row) {
   tile.clearance.fill(kUnknown);
   tile.seen.fill(0);
   tile.doubts.fill(0);
+  tile.near = 0;
   tile.column = static_cast<std::int16_t>(column);
   tile.row = static_cast<std::int16_t>(row);
   tile.used = true;
@@ -72,6 +74,11 @@ void BuildingMemory::look(const LaserScan& scan, const Pose2& sensor_W) {
       if (crossings < kMostCrossings) ++crossings;
       std::uint8_t& doubts = tile->doubts[within(c)];
       if (doubts > 0) --doubts;
+      if (k < kNearSteps) tile->near |= std::uint64_t{1} << within(c);
+    }
+    if (ends && scan.ranges[i] < kNear) {
+      const Cell c = cell_of(sensor_W.position() + scan.ranges[i] * way);
+      get(tile_of(c.column), tile_of(c.row)).near |= std::uint64_t{1} << within(c);
     }
     if (is_mixed(scan, i) && scan.ranges[i] < kLook) {
       doubt(cell_of(sensor_W.position() + scan.ranges[i] * way));

@@ -33,10 +33,11 @@ class BuildingMemory {
 
   struct Tile {
     std::array<std::uint32_t, kFineSide> occupied{};  // a bit per cell, a number per row
-    /// [cm] The largest distance to an obstacle within each coarse cell, or kUnknown.
+    /// [cm] The room for driving through each coarse cell, or kUnknown.
     std::array<std::uint8_t, kCells> clearance{};
     std::array<std::uint8_t, kCells> seen{};  // beams that have crossed it
     std::array<std::uint8_t, kCells> doubts{};
+    std::uint64_t near = 0;            // a bit per cell: a beam came here from within kNear
     std::int16_t column = 0, row = 0;  // its place: the plane's tiles share memory periodically
     bool used = false;
   };
@@ -74,6 +75,12 @@ class BuildingMemory {
     const Tile* const tile = find(tile_of(c.column), tile_of(c.row));
     return tile != nullptr && tile->doubts[within(c)] >= kDoubtful;
   }
+  /// True if a beam has crossed the cell, or ended in it, within kNear of its scanner.
+  bool seen_near(Cell c) const {
+    const Tile* const tile = find(tile_of(c.column), tile_of(c.row));
+    return tile != nullptr && (tile->near >> within(c) & 1U) != 0;
+  }
+  static constexpr double kNear = 2.5;  // [m]
   /// [cm] or kUnknown.
   std::uint8_t clearance(Cell c) const {
     const Tile* const tile = find(tile_of(c.column), tile_of(c.row));

@@ -53,8 +53,10 @@ class LocalMap {
   /// kept in `memory`, and what enters it is read from there.
   bool follow(const Vec2& position_W, BuildingMemory* memory = nullptr);
   /// Writes the clearances of `tiles` of the window's tiles into the coarse layer of `memory`, in
-  /// turn. Left out are the window's outermost tiles, whose surroundings are not known.
-  void survey(int tiles, BuildingMemory& memory);
+  /// turn. Left out are the window's outermost tiles, whose surroundings are not known. A robot
+  /// needs `least` [m]; with `exact`, clearances close to it are measured to the hits themselves,
+  /// as the planner does: it must not find a way from afar that it finds shut when it is near.
+  void survey(int tiles, double least, bool exact, BuildingMemory& memory);
 
   /// Enters the hits of `scan` as points of W, except those on moving obstacles, and clears the
   /// cells that it looked through. `sensor_W` is the scanner's pose at the middle of its sweep,
@@ -126,6 +128,7 @@ class LocalMap {
       for (int x = x0; x <= x1; ++x) visit(index(x, y));
     }
   }
+  double room_through(int column, int row, double least, bool exact) const;
   Vec2 centre_W(std::size_t cell) const {
     const auto column = static_cast<double>(cell % kSize);
     const std::size_t row = cell / kSize;

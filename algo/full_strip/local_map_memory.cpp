@@ -4,13 +4,15 @@
 #include <cmath>
 
 #include "algo/full_strip/local_map.hpp"
+#include "algo/full_strip/roomiest.hpp"
 
 namespace algo {
 namespace {
 
 constexpr int kMapTiles = LocalMap::kSize / BuildingMemory::kFineSide;  // along the window's edge
 constexpr int kFinePerCoarse = BuildingMemory::kFineSide / BuildingMemory::kCoarseSide;
-constexpr double kMmPerCm = 10;
+constexpr double kCm = 0.01;           // [m]
+constexpr double kCellDoubt = 3;       // [cm] by which the distance between cells may be too low
 constexpr std::uint8_t kRestored = 6;  // hits of a cell that enters again
 
 /// Calls `visit(column, row)` for each tile of a window of kMapTiles that lies outside the window
@@ -80,23 +82,35 @@ void LocalMap::restore(int column, int row, const BuildingMemory::Tile& tile) {
   }
 }
 
-void LocalMap::survey(int tiles, BuildingMemory& memory) {
+/// [m] The room for driving through the coarse cell that begins at the cell (column, row), along
+/// either axis: on the narrowest of its two lines of the planner's points, the better one of each.
+double LocalMap::room_through(int column, int row, double least, bool exact) const {
+  static_assert(kFinePerCoarse == 4);
+  const auto room = [&](int u, int v) {
+    return room_at(*this, column + 2 * u, row + 2 * v, least, exact);
+  };
+  const double a = room(0, 0);
+  const double b = room(1, 0);
+  const double c = room(0, 1);
+  const double d = room(1, 1);
+  return std::max(std::min(std::max(a, b), std::max(c, d)),
+                  std::min(std::max(a, c), std::max(b, d)));
+}
+
+void LocalMap::survey(int tiles, double least, bool exact, BuildingMemory& memory) {
   constexpr int kInner = kMapTiles - 2;
+  constexpr int kSide = BuildingMemory::kFineSide;
   for (int k = 0; k < tiles; ++k, next_survey_ = (next_survey_ + 1) % (kInner * kInner)) {
     const int x = 1 + next_survey_ % kInner;
     const int y = 1 + next_survey_ / kInner;
     BuildingMemory::Tile& tile = memory.get(tile_column() + x, tile_row() + y);
     for (int row = 0; row < BuildingMemory::kCoarseSide; ++row) {
       for (int column = 0; column < BuildingMemory::kCoarseSide; ++column) {
-        std::int16_t most = 0;
-        for (int v = 0; v < kFinePerCoarse; ++v) {
-          const std::int16_t* const from =
-              field_->from(x * BuildingMemory::kFineSide + column * kFinePerCoarse,
-                           y * BuildingMemory::kFineSide + row * kFinePerCoarse + v);
-          for (int u = 0; u < kFinePerCoarse; ++u) most = std::max(most, from[u]);
-        }
-        tile.clearance[BuildingMemory::within({column, row})] =
-            static_cast<std::uint8_t>(most / kMmPerCm);
+        const double room = room_through(
+            x * kSide + column * kFinePerCoarse, y * kSide + row * kFinePerCoarse, least, exact);
+        // Rounded, but not across the least.
+        const double cm = room < least ? std::min(room, least - kCm) / kCm : room / kCm + 1;
+        tile.clearance[BuildingMemory::within({column, row})] = static_cast<std::uint8_t>(cm);
       }
     }
   }

@@ -7,6 +7,8 @@
 #include <limits>
 #include <new>
 
+#include "algo/full_strip/roomiest.hpp"
+
 namespace algo {
 namespace {
 
@@ -31,15 +33,14 @@ constexpr float kLeaving = 8;             // [m per m] if there is too little ro
 constexpr float kBucket = 0.05F;          // [m]
 constexpr std::size_t kBuckets = 32'768;  // 1.6 km; costlier points share the last
 constexpr std::size_t kMostEntries = 2'000'000;  // then nothing farther is searched
-constexpr int kSearchFree = 15;        // lattice steps: the largest distance of a replaced goal
-constexpr int kAroundSeen = 20;        // coarse cells around all that was seen
-constexpr int kMostCoarse = 480;       // coarse cells from the robot
-constexpr double kCoarseDoubt = 0.03;  // [m] by which a remembered clearance may be too low
-constexpr double kDoubtBelow = 0.06;   // [m] below and above the least clearance, where it is
-constexpr double kDoubtAbove = 0.02;   //     measured exactly
-constexpr int kExactCost = 3;          // of the budget
-constexpr double kUnseenRoom = 0.05;   // [m] more, for an unseen goal
-constexpr double kAside = 0.06;  // [m] from a lattice point to the roomiest place it stands for
+constexpr int kSearchFree = 15;       // lattice steps: the largest distance of a replaced goal
+constexpr int kAroundSeen = 20;       // coarse cells around all that was seen
+constexpr int kMostCoarse = 480;      // coarse cells from the robot
+constexpr double kLenientRoom = 0.2;  // [m] clearance of a narrow place that may be looked at,
+constexpr double kFromAfar = 0.05;    // [m] more beyond the local map
+constexpr float kUnsure = 30;         // [m per m] there
+constexpr int kExactCost = 3;         // of the budget
+constexpr double kUnseenRoom = 0.05;  // [m] more, for an unseen goal
 
 }  // namespace
 
@@ -93,14 +94,11 @@ Planner::Point& Planner::at(Id id) {
 double Planner::clearance(const PlanWorld& world, Id id) const {
   if (!is_fine(id)) {
     const std::uint8_t cm = world.memory.clearance(cell_of(id));
-    return cm == BuildingMemory::kUnknown ? LocalMap::kReach : cm * 0.01 + kCoarseDoubt;
+    return cm == BuildingMemory::kUnknown ? LocalMap::kReach : cm * 0.01;
   }
   const int column = static_cast<int>(id % kFine) * 2;
   const int row = static_cast<int>(id / kFine) * 2;
-  const LocalMap& map = world.map;
-  const int sum = map.cell_distance(column, row) + map.cell_distance(column + 1, row) +
-                  map.cell_distance(column, row + 1) + map.cell_distance(column + 1, row + 1);
-  return sum * 0.00025;
+  return corner_distance(world.map, column, row);
 }
 
 bool Planner::near_robot(Id id) const {
@@ -144,16 +142,19 @@ float Planner::cost_of(const PlanWorld& world, Id id) {
 
 float Planner::new_cost(const PlanWorld& world, Id id) {
   double d = clearance(world, id);
-  const bool doubtful = d > step_.least - kDoubtBelow && d < step_.least + kDoubtAbove;
-  if (exact_ && doubtful && is_fine(id)) {
+  if (options_.exact && is_fine(id) && is_doubtful(d, options_.cost.least)) {
     spent_ += kExactCost;
     d = roomiest(world.map, position_W(id), kAside, LocalMap::kReach).distance;
   }
-  if (d < step_.least) return near_robot(id) ? kLeaving : -1;
   const Cell cell = is_fine(id) ? BuildingMemory::cell_of(position_W(id)) : cell_of(id);
+  if (d < options_.cost.least) {
+    if (near_robot(id)) return kLeaving;
+    const double room = kLenientRoom + (is_fine(id) ? 0 : kFromAfar);
+    return options_.lenient && d >= room && !world.memory.seen_near(cell) ? kUnsure : -1;
+  }
   const double price = world.memory.seen(cell) ? 1 : StepCost::kUnseen;
   const double doubt = world.memory.doubtful(cell) ? StepCost::kDoubt : 0;
-  return static_cast<float>(price * step_.of(d) + doubt);
+  return static_cast<float>(price * options_.cost.of(d) + doubt);
 }
 
 /// True if the goal may lie at the point. An unseen one needs more room: it may be the inside of a
@@ -161,10 +162,11 @@ float Planner::new_cost(const PlanWorld& world, Id id) {
 bool Planner::has_room(const PlanWorld& world, Id id) const {
   const double d = clearance(world, id);
   const Vec2 p_W = position_W(id);
-  if (!world.memory.seen(BuildingMemory::cell_of(p_W))) return d >= step_.least + kUnseenRoom;
-  if (d >= step_.least) return true;
-  return exact_ && is_fine(id) &&
-         roomiest(world.map, goal_W_, kAside, LocalMap::kReach).distance >= step_.least;
+  if (!world.memory.seen(BuildingMemory::cell_of(p_W)))
+    return d >= options_.cost.least + kUnseenRoom;
+  if (d >= options_.cost.least) return true;
+  return options_.exact && is_fine(id) &&
+         roomiest(world.map, goal_W_, kAside, LocalMap::kReach).distance >= options_.cost.least;
 }
 
 /// The nearest point with room to stand, preferably a seen one. An unseen point may be the inside
@@ -183,7 +185,7 @@ Planner::Id Planner::free_point(const PlanWorld& world, Id wanted) const {
       const bool seen = world.memory.seen(BuildingMemory::cell_of(position_W(id)));
       const double far = std::hypot(x - column, y - row);
       const bool nearer = seen == best_seen ? far < least : seen;
-      if (!nearer || clearance(world, id) < step_.least) continue;
+      if (!nearer || clearance(world, id) < options_.cost.least) continue;
       least = far;
       best = id;
       best_seen = seen;
@@ -211,13 +213,10 @@ void Planner::place_bounds(const BuildingMemory& memory) {
 void Planner::start(const PlanWorld& world,
                     const Vec2& robot_W,
                     const Vec2& goal_W,
-                    const StepCost& cost,
-                    bool exact,
-                    bool try_tight) {
+                    const Options& options) {
   corner_W_ = world.map.corner_W();
   corner_ = BuildingMemory::cell_of(corner_W_ + Vec2(kStep, kStep));
-  step_ = cost;
-  exact_ = exact;
+  options_ = options;
   ++round_;
   robot_W_ = robot_W;
   robot_ = id_at(robot_W);
@@ -230,7 +229,7 @@ void Planner::start(const PlanWorld& world,
   root_ = id_at(goal_W_);
   goal_taken_ = false;
   const bool room = has_room(world, root_);
-  goal_tight_ = !room && try_tight && near_robot(root_);
+  goal_tight_ = !room && options.try_tight && near_robot(root_);
   if (!room && !goal_tight_) {
     const Id free = free_point(world, root_);
     goal_taken_ = share >= 1 && free != root_;
@@ -323,14 +322,17 @@ void Planner::path(const PlanWorld& world, Path& out) const {
   out.points_W.clear();
   out.local = 0;
   out.beyond = 0;
+  out.unsure = false;
   if (state_ != State::Found) return;
   out.points_W.push_back(robot_W_);
   bool local = true;
   Id id = robot_;
   for (; id != root_; id = points_[id].parent) {
     const Id next = points_[id].parent;
+    out.unsure = out.unsure || points_[next].cost == kUnsure;
     Vec2 p_W = position_W(next);
-    if (exact_ && is_fine(next) && clearance(world, next) < step_.half_width + StepCost::kEasy) {
+    if (options_.exact && is_fine(next) &&
+        clearance(world, next) < options_.cost.half_width + StepCost::kEasy) {
       p_W = roomiest(world.map, p_W, kAside, LocalMap::kReach).p_W;
     }
     if (local && !is_fine(next)) {
@@ -352,33 +354,6 @@ std::optional<double> Planner::cost_from(const Vec2& p_W) const {
   const Point& point = points_[id_at(p_W)];
   if (point.round != round_ || point.g < 0) return std::nullopt;
   return static_cast<double>(point.g);
-}
-
-Roomiest roomiest(const LocalMap& map, const Vec2& p_W, double reach, double most) {
-  constexpr double kStep = 0.02;   // [m]
-  constexpr double kBeyond = 0.5;  // [m] nothing farther matters where it is narrow
-  const double look = std::min(most, kBeyond);
-  Vec2 nearest_W{0, 0};
-  const auto measure = [&](const Vec2& at_W) {
-    double least = look * look;
-    nearest_W = at_W;
-    map.each_near(at_W, look, [&](const Vec2& point_W) {
-      const double far = (point_W - at_W).squaredNorm();
-      if (far >= least) return;
-      least = far;
-      nearest_W = point_W;
-    });
-    return std::sqrt(least);
-  };
-  Roomiest best{p_W, measure(p_W)};
-  for (double way = kStep; way <= reach && nearest_W != best.p_W; way += kStep) {
-    const Vec2 away = (best.p_W - nearest_W).normalized();
-    const Vec2 next_W = best.p_W + kStep * away;
-    const double d = measure(next_W);
-    if (d <= best.distance) break;
-    best = {next_W, d};
-  }
-  return best;
 }
 
 void straighten(const LocalMap& map, double room, Recycled<Vec2>& path) {

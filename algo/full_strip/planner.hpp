@@ -35,16 +35,18 @@ class Planner {
   Planner();
   void reset() { state_ = State::Idle; }
 
+  struct Options {
+    StepCost cost{};
+    bool exact = false;      // doubtful clearances are measured to the hits themselves
+    bool try_tight = false;  // keep a goal without room right before the robot: the map may err
+    bool lenient = false;    // narrow places that nobody has seen from nearby may be passed
+  };
   /// Begins a search. The nearest place with room replaces a goal without room; a goal farther than
-  /// kFarthest is replaced on the straight line to it. With `try_tight`, a goal without room right
-  /// before the robot is kept: the map's error may account for the missing room. `exact`: doubtful
-  /// clearances are measured to the hits themselves.
+  /// kFarthest is replaced on the straight line to it.
   void start(const PlanWorld& world,
              const Vec2& robot_W,
              const Vec2& goal_W,
-             const StepCost& cost,
-             bool exact,
-             bool try_tight);
+             const Options& options);
   static constexpr double kFarthest = 90;  // [m] along each axis
   /// Expands up to `budget` lattice points.
   State search(const PlanWorld& world, int budget);
@@ -63,6 +65,7 @@ class Planner {
     Recycled<Vec2> points_W{};  // robot first, at most one point per lattice step
     std::size_t local = 0;      // of them lie on the inner tiles of the local map, before it leaves
     double beyond = 0;          // cost [m] of the rest
+    bool unsure = false;        // it passes a narrow place that nobody has seen from nearby
   };
   void path(const PlanWorld& world, Path& out) const;
   /// Cost [m] from `p_W` to the goal, as far as the last search has come; nothing if it has not
@@ -122,8 +125,7 @@ class Planner {
   State state_ = State::Idle;
   bool goal_taken_ = false;
   bool goal_tight_ = false;
-  bool exact_ = false;
-  StepCost step_{};
+  Options options_{};
   Vec2 corner_W_{0, 0};  // of the fine lattice
   Cell corner_{};        // the same, in coarse cells
   Vec2 robot_W_{0, 0};
@@ -140,14 +142,6 @@ class Planner {
   std::vector<Entry> entries_;
   std::size_t bucket_ = 0;
 };
-
-/// The place within `reach` [m] of `p_W` that is farthest from all hits, approached by small steps,
-/// and its distance [m] to the nearest, at most `most`.
-struct Roomiest {
-  Vec2 p_W{0, 0};
-  double distance = 0;
-};
-Roomiest roomiest(const LocalMap& map, const Vec2& p_W, double reach, double most);
 
 /// Removes points of `path` wherever the straight line past them keeps `room` [m]. This removes the
 /// lattice's corners in open space.

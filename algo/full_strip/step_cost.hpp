@@ -11,6 +11,13 @@ struct StepCost {
   double half_width = 0;  // [m] of the hull
   double least = 0;       // [m] clearance below which there is no way
 
+  /// Of a hull of `half_width` [m]; a `round` one has no other width.
+  static StepCost of_hull(double half_width, bool round) {
+    constexpr double kRoundRoom = 0.02;  // [m] beside a disc, whose clearance is measured exactly
+    constexpr double kRoom = 0.01;       // [m] beside another hull, on a lattice that errs
+    return {.half_width = half_width, .least = half_width + (round ? kRoundRoom : kRoom)};
+  }
+
   static constexpr double kComfort = 0.7;  // [m] clearance above which more is not worth a detour
   static constexpr double kFull = 0.5;     // [m] less than kComfort: kCrowded more,
   static constexpr double kCrowded = 3;    // [m per m]

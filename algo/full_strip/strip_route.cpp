@@ -10,8 +10,6 @@
 namespace algo {
 namespace {
 
-constexpr double kRoundRoom = 0.02;   // [m] beside a disc, whose clearance is measured exactly
-constexpr double kRoom = 0.01;        // [m] beside another hull, on a lattice that errs
 constexpr int kExpansions = 400;      // of the planner in a tick
 constexpr int kExpansionsNow = 1600;  // if there is no strip to follow
 constexpr double kOtherShare = 0.9;   // a new strip below this share of the old cost replaces it,
@@ -81,8 +79,7 @@ void StripRoute::update(const RouteSettings& settings,
 }
 
 StepCost StripRoute::step_cost() const {
-  const double room = settings_.round ? kRoundRoom : kRoom;
-  return {.half_width = settings_.half_width, .least = settings_.half_width + room};
+  return StepCost::of_hull(settings_.half_width, settings_.round);
 }
 
 /// [m] Distance from the end of `strip` to the goal.
@@ -122,7 +119,6 @@ void StripRoute::plan(const PlanWorld& world, const Vec2& here_W, double now) {
   switch (planner_.search(world, urgent ? kExpansionsNow : kExpansions)) {
     case Planner::State::Found:
       if (aim_ == Aim::Goal) {
-        failures_ = 0;
         if (watch_) strip_.clear();  // it leads elsewhere
         watch_.reset();
         closure_.reset();
@@ -141,7 +137,13 @@ void StripRoute::start_search(const PlanWorld& world, const Vec2& here_W, double
   aim_ = Aim::Goal;
   const double patience = ProgressWatch::time_for(kTryTight, settings_.max_v);
   const bool try_tight = !tight_since_ || now - *tight_since_ < patience;
-  planner_.start(world, here_W, *goal_W_, step_cost(), settings_.round, try_tight);
+  planner_.start(world,
+                 here_W,
+                 *goal_W_,
+                 {.cost = step_cost(),
+                  .exact = settings_.round,
+                  .try_tight = try_tight,
+                  .lenient = lenient()});
   if (planner_.goal_tight() && !tight_since_) tight_since_ = now;
   next_plan_ = now + settings_.plan_period;
 }
@@ -160,7 +162,7 @@ void StripRoute::note_closure(const PlanWorld& world) {
 }
 
 /// A search has found no way. The first one to the goal in a row makes the map drop its doubtful
-/// cells. After the second there is no way.
+/// cells. After the third, a lenient one, there is no way.
 void StripRoute::fail(const PlanWorld& world, const Vec2& here_W, double now) {
   if (aim_ == Aim::Reach) {
     watch_ = Watch{planner_.closest_W(), *goal_W_, {}};
@@ -174,11 +176,11 @@ void StripRoute::fail(const PlanWorld& world, const Vec2& here_W, double now) {
     return;
   }
   if (failures_ < kSurely) ++failures_;
-  if (!no_way()) {
+  if (failures_ == 1) {
     doubts_ = true;
     next_plan_ = now + kDoubtTime;
-    return;
   }
+  if (!no_way()) return;
   next_plan_ = now + kAgainAfter;
   wait_for_way(world, here_W, now);
 }
@@ -194,7 +196,7 @@ void StripRoute::wait_for_way(const PlanWorld& world, const Vec2& here_W, double
   }
   if (!watch_) {
     aim_ = Aim::Reach;
-    planner_.start(world, *goal_W_, here_W, step_cost(), settings_.round, false);
+    planner_.start(world, *goal_W_, here_W, {.cost = step_cost(), .exact = settings_.round});
     return;
   }
   if (!watch_->since && (watch_->from_W - here_W).norm() < kThere) watch_->since = now;
@@ -210,12 +212,13 @@ void StripRoute::wait_for_way(const PlanWorld& world, const Vec2& here_W, double
 
 void StripRoute::search_for_watch(const PlanWorld& world, const Vec2& here_W) {
   aim_ = Aim::Watch;
-  planner_.start(world, here_W, watch_->from_W, step_cost(), settings_.round, false);
+  planner_.start(world, here_W, watch_->from_W, {.cost = step_cost(), .exact = settings_.round});
 }
 
 /// Makes the plan the strip if there is none, or if it is clearly better than the present one.
 void StripRoute::take_plan(const PlanWorld& world, const Vec2& here_W) {
   planner_.path(world, path_);
+  if (aim_ == Aim::Goal && !path_.unsure) failures_ = 0;
   line_W_.clear();
   for (std::size_t i = 0; i < path_.local; ++i) line_W_.push_back(path_.points_W[i]);
   straighten(world.map, settings_.strip.rest_distance, line_W_);

@@ -63,7 +63,10 @@ class StripRoute {
   const Recycled<Vec2>& path_W() const { return path_.points_W; }
 
  private:
-  static constexpr int kSurely = 2;  // searches in a row without a way: one may have met a ghost
+  // Searches in a row without a way. The first may have met a ghost on the map. From the third on
+  // they are lenient.
+  static constexpr int kSurely = 3;
+  bool lenient() const { return failures_ >= kSurely - 1; }
   void ease_last_leg(const LocalMap& map, const Vec2& here_W);
   void stretch(const LocalMap& map, const Vec2& here_W, double now);
   void plan(const PlanWorld& world, const Vec2& here_W, double now);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "algo/full_strip/step_cost.hpp"
+
 namespace algo {
 namespace {
 
@@ -39,7 +41,8 @@ void StripSenses::update(const ControlInput& in, const HullCheck& hull, bool tra
     memory_.look(scan, sensor_W);
     forget_traces(in, hull);
   }
-  map_.survey(kSurveyed, memory_);
+  const double least = StepCost::of_hull(hull.half_width(), hull.is_round()).least;
+  map_.survey(kSurveyed, least, hull.is_round(), memory_);
   tracker_.predict(in.stamp);
 }
 

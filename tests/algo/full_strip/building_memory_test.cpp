@@ -1,6 +1,7 @@
 // tests/algo/full_strip/building_memory_test.cpp: what is kept beyond the map, and comes back.
 #include "algo/full_strip/building_memory.hpp"
 
+#include <algorithm>
 #include <numbers>
 
 #include "tests/algo/full_strip/walls.hpp"
@@ -69,6 +70,20 @@ TEST(MixedBeam, AWallAcrossTheBeamsIsNotMixed) {
   for (std::size_t i = 0; i < scan.size(); ++i) EXPECT_FALSE(algo::is_mixed(scan, i)) << i;
 }
 
+TEST(BuildingMemory, TellsWhatWasSeenFromNearby) {
+  BuildingMemory memory;
+  algo::LaserScan scan = free_sweep();
+  for (std::size_t i = 170; i < 190; ++i) scan.set_ok(i, 2.1);
+  for (int k = 0; k < 10; ++k) memory.look(scan, {0, 0.1, 0});
+  EXPECT_TRUE(memory.seen_near(cell(1, 0.1)));
+  EXPECT_TRUE(memory.seen_near(cell(2.1, 0.1))) << "where its beams end";
+  EXPECT_TRUE(memory.seen_near(cell(0.1, 2.1)));
+  EXPECT_FALSE(memory.seen_near(cell(2.7, 0.1))) << "behind it";
+  EXPECT_FALSE(memory.seen_near(cell(0.1, 4))) << "seen from afar";
+  memory.reset();
+  EXPECT_FALSE(memory.seen_near(cell(1, 0.1)));
+}
+
 TEST(BuildingMemory, AMixedBeamRaisesDoubtsThatCrossingBeamsDispel) {
   BuildingMemory memory;
   algo::LaserScan scan = free_sweep();
@@ -129,11 +144,42 @@ TEST(BuildingMemory, TheCoarseLayerHoldsTheLargestClearance) {
   BuildingMemory memory;
   map.reset({0, 0});
   walls::wall(map, {-3, 2}, {3, 2});
-  map.survey(14 * 14, memory);
+  map.survey(14 * 14, 0.37, true, memory);
   EXPECT_LE(memory.clearance(cell(0.1, 2.05)), 20);
   EXPECT_NEAR(memory.clearance(cell(0.1, 1.5)), 60, 8);
-  EXPECT_EQ(memory.clearance(cell(0.1, -2)), 102);
+  EXPECT_EQ(memory.clearance(cell(0.1, -2)), 103);
   EXPECT_EQ(memory.clearance(cell(40, 0)), BuildingMemory::kUnknown);
+}
+
+/// A gap of `width` [m] in a wall along x, as the planner finds it from afar.
+bool is_open_from_afar(double width, double at) {
+  LocalMap map;
+  BuildingMemory memory;
+  map.reset({0, 0});
+  for (int k = 0; k < 3; ++k) {
+    walls::wall(map, {-3, 2}, {at - width / 2, 2});
+    walls::wall(map, {at + width / 2, 2}, {3, 2});
+  }
+  map.survey(14 * 14, 0.37, true, memory);
+  int most = 0;
+  for (double x = at - 0.4; x < at + 0.4; x += 0.1) {
+    most = std::max<int>(
+        most, std::min(memory.clearance(cell(x, 2.01)), memory.clearance(cell(x, 1.99))));
+  }
+  return most >= 37;
+}
+
+/// Else the robot drives to a way that it finds shut as soon as it is near, turns back, and drives
+/// there again: it once did so for a quarter of an hour.
+TEST(BuildingMemory, AGapThatIsTooNarrowIsShutFromAfarToo) {
+  for (const double at : {0.0, 0.03, 0.07, 0.11}) {
+    for (const double width : {0.60, 0.64, 0.68}) {
+      EXPECT_FALSE(is_open_from_afar(width, at)) << width << " m at " << at;
+    }
+    for (const double width : {0.80, 0.85, 1.0}) {
+      EXPECT_TRUE(is_open_from_afar(width, at)) << width << " m at " << at;
+    }
+  }
 }
 
 }  // namespace

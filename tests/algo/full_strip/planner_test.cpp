@@ -27,7 +27,8 @@ struct Search {
 
   algo::PlanWorld world() const { return {map, memory}; }
   void start(const Vec2& from_W, const Vec2& to_W, bool try_tight = true, bool exact = false) {
-    planner.start(world(), from_W, to_W, kStepCost, exact, try_tight);
+    planner.start(
+        world(), from_W, to_W, {.cost = kStepCost, .exact = exact, .try_tight = try_tight});
   }
   Planner::State finish() {
     Planner::State state = planner.state();
@@ -36,6 +37,16 @@ struct Search {
     }
     planner.path(world(), path);
     return state;
+  }
+  /// A beam has come to each coarse cell of the rectangle from nearby.
+  void look_at(const Vec2& low_W, const Vec2& high_W) {
+    for (double y = low_W.y(); y <= high_W.y(); y += 0.1) {
+      for (double x = low_W.x(); x <= high_W.x(); x += 0.1) {
+        const BuildingMemory::Cell cell = BuildingMemory::cell_of({x, y});
+        memory.get(BuildingMemory::tile_of(cell.column), BuildingMemory::tile_of(cell.row)).near |=
+            std::uint64_t{1} << BuildingMemory::within(cell);
+      }
+    }
   }
   /// Remembers that the coarse cells of the rectangle are `cm` from the nearest thing.
   void remember(const Vec2& low_W, const Vec2& high_W, std::uint8_t cm) {
@@ -272,6 +283,41 @@ TEST(NodeStrip, IsBrokenByANewObstacle) {
   strip.lay(path);
   wall(map, {1.5, -0.3}, {1.5, 0.3});
   EXPECT_NEAR(strip.broken_at(map, {.least_clearance = 0.2}), 1.35, 0.16);
+}
+
+/// A goal in a pen with a gap of 0.5 m, too narrow for the hull: from afar, a door seen at a flat
+/// angle looks the same.
+struct Pen : Search {
+  Pen() {
+    wall(map, {3, -1}, {3, -0.25});
+    wall(map, {3, 0.25}, {3, 1});
+    wall(map, {3, 1}, {5, 1});
+    wall(map, {5, 1}, {5, -1});
+    wall(map, {5, -1}, {3, -1});
+  }
+  Planner::State search_for_it(bool lenient) {
+    planner.start(world(), {0, 0}, {4, 0}, {.cost = kStepCost, .exact = true, .lenient = lenient});
+    return finish();
+  }
+};
+
+TEST(Planner, ALenientSearchLeadsToANarrowPlaceThatNobodyHasSeenFromNearby) {
+  Pen pen;
+  EXPECT_EQ(pen.search_for_it(false), Planner::State::NoWay);
+  ASSERT_EQ(pen.search_for_it(true), Planner::State::Found);
+  EXPECT_TRUE(pen.path.unsure);
+  pen.look_at({2.5, -0.5}, {3.5, 0.5});
+  EXPECT_EQ(pen.search_for_it(true), Planner::State::NoWay);
+}
+
+TEST(Planner, ALenientSearchTakesASureWayIfThereIsOne) {
+  Search search;
+  wall(search.map, {2, -4}, {2, -0.25});
+  wall(search.map, {2, 0.25}, {2, 3});
+  wall(search.map, {2, 4.2}, {2, 8});
+  search.planner.start(search.world(), {0, 0}, {4, 0}, {.cost = kStepCost, .lenient = true});
+  ASSERT_EQ(search.finish(), Planner::State::Found);
+  EXPECT_FALSE(search.path.unsure);
 }
 
 }  // namespace
