@@ -45,7 +45,7 @@ Planner::Planner() : buckets_(kBuckets) {
 /// Makes the coarse lattice `coarse` points wide.
 void Planner::allocate(int coarse) {
   coarse_ = coarse;
-  farthest_ = kFarthest + (coarse - kCoarse) * BuildingMemory::kCoarse / 2;
+  farthest_ = farthest_on(coarse);
   const auto side = static_cast<std::size_t>(coarse);
   points_.reset(static_cast<Point*>(std::calloc(kFineCount + side * side, sizeof(Point))));
   if (points_ == nullptr) throw std::bad_alloc();
@@ -56,7 +56,8 @@ void Planner::allocate(int coarse) {
 
 void Planner::hold(const DrawnSpace& drawn) {
   int coarse = kCoarse;
-  while (coarse < kMostCoarse && coarse < 2 * std::max(drawn.columns(), drawn.rows())) coarse *= 2;
+  const double longest = std::max(drawn.columns(), drawn.rows()) * DrawnSpace::kCell;
+  while (coarse < kMostCoarse && farthest_on(coarse) < longest) coarse *= 2;
   if (coarse != coarse_) allocate(coarse);
 }
 
@@ -177,7 +178,10 @@ float Planner::new_cost(const PlanWorld& world, Id id) {
   const double doubt = world.memory.doubtful(cell) ? StepCost::kDoubt : 0;
   if (world.memory.seen(cell)) return static_cast<float>(step_.of(d) + doubt);
   const std::optional<double> drawn = world.drawn_room(cell);
-  if (!drawn) return static_cast<float>(StepCost::kUnseen * step_.of(d) + doubt);
+  if (!drawn) {
+    const double price = world.drawn == nullptr ? StepCost::kUnseen : StepCost::kUndrawn;
+    return static_cast<float>(price * step_.of(d) + doubt);
+  }
   const bool shut = *drawn < step_.least;
   if (shut && walls_ == DrawnWalls::Shut) return near_robot(id) ? kLeaving : -1;
   const double wall = shut ? StepCost::kDrawnWall : 0;

@@ -116,6 +116,10 @@ class Planner {
   Point& at(Id id);
   bool near_robot(Id id) const;
   float heuristic(Id id) const;
+  /// [m] On a lattice of `coarse` points along its edge.
+  static double farthest_on(int coarse) {
+    return kFarthest + (coarse - kCoarse) * BuildingMemory::kCoarse / 2;
+  }
   void allocate(int coarse);
   double clearance(const PlanWorld& world, Id id) const;
   Cell coarse_of(Id id) const;

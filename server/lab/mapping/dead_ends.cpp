@@ -59,8 +59,7 @@ std::vector<DeadEndRun> study_dead_ends(const LocateOptions& options) {
     const Drawing drawing = dead_end_of(run.drawing, run.seed);
     RunOverrides overrides;
     overrides.seed = run.seed;
-    overrides.map =
-        map_of(outdated(drawing, options.wrong, run.seed), drawing.way_W.front(), run.planned);
+    overrides.map = map_of(outdated(drawing, options.wrong, run.seed), drawing, run.planned);
     sim::Scenario scenario = scenario_of(drawing);
     scenario.time_limit = kLongDrive;
     drive_dead_end(make_spec(std::move(scenario), overrides), run);

@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "algo/metrics.hpp"
 #include "algo/types.hpp"
 #include "server/experiment/pool.hpp"
 #include "server/lab/mapping/corridor_walls.hpp"
@@ -46,10 +47,10 @@ enum class DrivesBy : std::uint8_t {
 /// way to the goal leads into a dead end.
 Drawing dead_end_of(const std::string& name, std::uint64_t seed);
 
-/// The map of `pieces`, free where a robot could get to from `inside_W`. `planned`: planners get it
-/// too.
+/// The map of `pieces`, with free cells wherever a robot could get in the true building. `planned`:
+/// planners get it too.
 std::shared_ptr<const KnownMap> map_of(const std::vector<Piece>& pieces,
-                                       const algo::Vec2& inside_W,
+                                       const Drawing& truth,
                                        bool planned);
 
 struct LocateRun {

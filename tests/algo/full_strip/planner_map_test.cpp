@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/algo/allocations.hpp"
 #include "tests/algo/full_strip/walls.hpp"
 #include <gtest/gtest.h>
 
@@ -159,6 +160,16 @@ TEST(PlannerMap, ReachesAcrossABuildingOfManyHundredMetres) {
   ASSERT_EQ(search.find({0, 0}, {390, 0}), Planner::State::Found);
   EXPECT_LT((search.path.points_W.back() - Vec2(390, 0)).norm(), 0.1);
   EXPECT_GT(search.length(), 600);
+}
+
+TEST(PlannerMap, ASearchAllocatesNothing) {
+  MapSearch search(dead_end());
+  const algo::PlanWorld world{search.map, search.memory, &search.drawn};
+  const std::size_t before = allocations::count();
+  search.planner.start(world, {0, 0}, {20, 0}, kHull, false, true);
+  while (search.planner.search(world, 400) == Planner::State::Searching) continue;
+  EXPECT_EQ(search.planner.state(), Planner::State::Found);
+  EXPECT_EQ(allocations::count(), before);
 }
 
 TEST(PlannerMap, AStraightLineStopsAtADrawnWall) {
