@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "algo/driving.hpp"
 #include "algo/mapping/map_localizer.hpp"
 #include "algo/perceive.hpp"
 #include "server/record/headless.hpp"
@@ -19,7 +18,6 @@ constexpr double kFalsePose = 0.5;     // [m]
 constexpr double kTrackSpacing = 0.2;  // [m]
 constexpr double kScannerRange = 30;   // [m] as the scanner LMS200 has it in centimetres
 constexpr double kTimeLimit = 600;     // [s]
-constexpr double kStudySpeed = 0.5;    // [m/s]
 constexpr double kLostTime = 60;       // [s] after which a robot that was never located gives up
 
 /// What believed poses are worth.
@@ -110,7 +108,6 @@ sim::Scenario scenario_of(const Drawing& drawing) {
   scenario.controller = "strip";
   scenario.physics = sim::PhysicsKind::Kinematic;
   scenario.time_limit = kTimeLimit;
-  scenario.parameters.set(algo::kMaxSpeed, kStudySpeed);
   scenario.drive = {
       .yaw_slip = 0.05, .odometry_scale = 0.05, .odometry_noise = 0.02, .odometry_slip = 0.05};
   for (sim::LaserConfig& laser : scenario.robot.sensors.lasers) {
