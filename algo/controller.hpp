@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
 
+#include "algo/drawn_space.hpp"
 #include "algo/observation.hpp"
 #include "algo/parameters.hpp"
 #include "algo/request.hpp"
@@ -34,6 +36,8 @@ struct RunFacts {
   std::string scenario{};
   std::uint64_t seed = 1;
   std::stop_token stop{};  // ends the run, and the waits of its controller
+  /// The map that the robot drives by; null: none.
+  std::shared_ptr<const DrawnSpace> map{};
 };
 
 /// The blocks "obstacle avoidance" and "determining velocity" of the thesis (Fig. 22).

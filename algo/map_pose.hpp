@@ -25,7 +25,7 @@ std::string_view sentence(MapFix fix);
 struct MapPose {
   MapFix fix = MapFix::Searching;
   std::uint32_t places = 0;  // that fit the scans
-  std::uint32_t epoch = 0;   // how often it was located anew: then the pose may jump
+  std::uint32_t epoch = 0;   // how often the pose may have jumped, as where it is located anew
   Pose2 wheels{};            // by the odometry alone, in a frame of its own
   double xx = 0;             // [m2] variances of the pose in W
   double xy = 0;             // [m2]

@@ -39,6 +39,11 @@ ParameterList FullStripController::parameters() {
   return kParameters;
 }
 
+void FullStripController::begin(const RunFacts& run) {
+  drawn_ = run.map;
+  if (drawn_) route_.hold(*drawn_);
+}
+
 void FullStripController::reset(const Pose2& start_W) {
   senses_.reset(start_W);
   route_.reset();
@@ -224,10 +229,7 @@ void FullStripController::update(const ControlInput& in,
     return;
   }
   take_goal(in);
-  route_.update(route_settings(parameters),
-                {senses_.map(), senses_.memory()},
-                in.odometry.pose.position(),
-                in.stamp);
+  route_.update(route_settings(parameters), plan_world(), in.odometry.pose.position(), in.stamp);
   if (route_.doubts()) senses_.forget_doubtful();
   const StageInput stage = stage_input(in);
   const StripCommand command = drive(stage, in, parameters);

@@ -3,7 +3,10 @@
 // (sequencing), and a velocity stage that proves every command.
 #pragma once
 
+#include <memory>
+
 #include "algo/controller.hpp"
+#include "algo/drawn_space.hpp"
 #include "algo/full_strip/commands_under_way.hpp"
 #include "algo/full_strip/full_strip_parameters.hpp"
 #include "algo/full_strip/giving_way.hpp"
@@ -25,6 +28,7 @@ class FullStripController final : public Controller {
   /// `among_moving`: tracks moving obstacles, and gives way to them by the beam search.
   explicit FullStripController(bool among_moving = false) : among_moving_(among_moving) {}
 
+  void begin(const RunFacts& run) override;
   void reset(const Pose2& start_W) override;
   void update(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
   void explain(const Telemetry& t, Explanation& words) const override;
@@ -47,11 +51,14 @@ class FullStripController final : public Controller {
   std::optional<StripCommand> follow(const StageInput& stage, const ControlInput& in);
   StripCommand recover(const StageInput& stage, const ControlInput& in);
   void report(const ControlInput& in, ControlOutput& out) const;
+  PlanWorld plan_world() const { return {senses_.map(), senses_.memory(), drawn_.get()}; }
+  void tell_map(ControlOutput& out) const;
   void show_strip(ControlOutput& out) const;
   void show_moving(ControlOutput& out) const;
   void show_weighed(ControlOutput& out) const;
 
   bool among_moving_ = false;
+  std::shared_ptr<const DrawnSpace> drawn_{};  // null: no map is known
   MotionLimits limits_{};
   StripSenses senses_{};
   StripRoute route_{};

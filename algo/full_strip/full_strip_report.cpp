@@ -10,6 +10,11 @@ constexpr std::uint32_t kDrawn = 240;  // cells along the drawn map's edge: 12 m
 constexpr double kOutOfSight = 0.2;    // [s] since last seen
 constexpr std::size_t kFewMoving = 8;  // reserved capacity
 
+/// The measure of a robot with a known map: why the map speaks against the way.
+constexpr std::string_view kMapDoubt = "map.doubt";
+constexpr double kDrawnTaken = 1;  // it shows something on the goal
+constexpr double kNoDrawnWay = 2;  // it shows no way to the goal
+
 constexpr LayerInfo kMap{
     .name = "map", .label = "Map", .kind = LayerKind::Grid, .tone = Tone::External};
 constexpr LayerInfo kMoving{.name = "moving",
@@ -40,9 +45,18 @@ void FullStripController::report(const ControlInput& in, ControlOutput& out) con
   if (limits_.jerk > 0 || limits_.angular_jerk > 0) {
     out.measures.push_back({kHardCommand, "", hard_ ? 1.0 : 0.0});
   }
+  if (drawn_) tell_map(out);
   show_weighed(out);
   show_strip(out);
   show_moving(out);
+}
+
+/// Tells if the way rests on a doubt of the known map.
+void FullStripController::tell_map(ControlOutput& out) const {
+  const auto cell = BuildingMemory::cell_of(*route_.goal_W());
+  const bool taken = route_.goal_replaced() && !senses_.memory().seen(cell);
+  const double doubt = route_.doubts_walls() ? kNoDrawnWay : taken ? kDrawnTaken : 0;
+  out.measures.push_back({kMapDoubt, "", doubt});
 }
 
 void FullStripController::show_weighed(ControlOutput& out) const {
@@ -140,6 +154,11 @@ void FullStripController::explain(const Telemetry& t, Explanation& words) const 
       break;
     default:
       words.what = "Following the strip";
+      if (t.output.measure(kMapDoubt).value_or(0) == kNoDrawnWay) {
+        words.why = "The known map shows no way to the goal: it drives to see if a wall is gone. ";
+      } else if (t.output.measure(kMapDoubt).value_or(0) == kDrawnTaken) {
+        words.why = "The known map shows something on the goal: it drives to see if it is there. ";
+      }
       say(words.why,
           "%.2f m along it to the goal, at %.2f m/s. ",
           t.output.measure("strip.length").value_or(0),

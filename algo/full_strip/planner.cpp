@@ -32,40 +32,53 @@ constexpr double kAtRobot = 0.3;          // [m] around the robot, where every p
 constexpr float kLeaving = 8;             // [m per m] if there is too little room
 constexpr float kBucket = 0.05F;          // [m]
 constexpr std::size_t kBuckets = 32'768;  // 1.6 km; costlier points share the last
-constexpr std::size_t kMostEntries = 2'000'000;  // then nothing farther is searched
-constexpr int kSearchFree = 15;       // lattice steps: the largest distance of a replaced goal
-constexpr int kAroundSeen = 20;       // coarse cells around all that was seen
-constexpr int kMostCoarse = 480;      // coarse cells from the robot
+constexpr std::size_t kMostEntries = 2'000'000;  // for the least lattice; then it ends
 constexpr double kLenientRoom = 0.2;  // [m] clearance of a narrow place that may be looked at,
 constexpr double kFromAfar = 0.05;    // [m] more beyond the local map
 constexpr float kUnsure = 30;         // [m per m] there
 constexpr int kExactCost = 3;         // of the budget
-constexpr double kUnseenRoom = 0.05;  // [m] more, for an unseen goal
 
 }  // namespace
 
-Planner::Planner()
-    : points_(static_cast<Point*>(std::calloc(kCount, sizeof(Point)))), buckets_(kBuckets) {
+Planner::Planner() : buckets_(kBuckets) {
+  allocate(kCoarse);
+}
+
+/// Makes the coarse lattice `coarse` points wide.
+void Planner::allocate(int coarse) {
+  coarse_ = coarse;
+  farthest_ = farthest_on(coarse);
+  const auto side = static_cast<std::size_t>(coarse);
+  points_.reset(static_cast<Point*>(std::calloc(kFineCount + side * side, sizeof(Point))));
   if (points_ == nullptr) throw std::bad_alloc();
-  entries_.reserve(kMostEntries);
+  entries_.reserve(kMostEntries * side / kCoarse);
+  round_ = 0;
+  reset();
+}
+
+void Planner::hold(const DrawnSpace& drawn) {
+  int coarse = kCoarse;
+  const double longest = std::max(drawn.columns(), drawn.rows()) * DrawnSpace::kCell;
+  while (coarse < kMostCoarse && farthest_on(coarse) < longest) coarse *= 2;
+  if (coarse != coarse_) allocate(coarse);
 }
 
 Planner::Id Planner::coarse_id(Cell c) const {
-  constexpr unsigned kMask = kCoarse - 1;
-  return kFineCount + (static_cast<unsigned>(c.row) & kMask) * kCoarse +
-         (static_cast<unsigned>(c.column) & kMask);
+  const unsigned mask = static_cast<unsigned>(coarse_) - 1;
+  return kFineCount + (static_cast<unsigned>(c.row) & mask) * static_cast<unsigned>(coarse_) +
+         (static_cast<unsigned>(c.column) & mask);
 }
 
 /// The cell that shares the memory of `coarse` and is nearest to the robot.
 Planner::Cell Planner::cell_of(Id coarse) const {
-  constexpr unsigned kMask = kCoarse - 1;
   constexpr int kToMiddle = kFine / 4;  // of the map, in coarse cells
-  const Cell first{corner_.column + kToMiddle - kCoarse / 2, corner_.row + kToMiddle - kCoarse / 2};
+  const auto side = static_cast<unsigned>(coarse_);
+  const Cell first{corner_.column + kToMiddle - coarse_ / 2, corner_.row + kToMiddle - coarse_ / 2};
   const unsigned place = coarse - kFineCount;
-  const auto turned = [&](unsigned at, int from) {
-    return from + static_cast<int>((at - static_cast<unsigned>(from)) & kMask);
+  const auto turned = [side](unsigned at, int from) {
+    return from + static_cast<int>((at - static_cast<unsigned>(from)) & (side - 1));
   };
-  return {turned(place % kCoarse, first.column), turned(place / kCoarse, first.row)};
+  return {turned(place % side, first.column), turned(place / side, first.row)};
 }
 
 Planner::Id Planner::id_at(const Vec2& p_W) const {
@@ -101,6 +114,18 @@ double Planner::clearance(const PlanWorld& world, Id id) const {
   return corner_distance(world.map, column, row);
 }
 
+Planner::Cell Planner::coarse_of(Id id) const {
+  return is_fine(id) ? BuildingMemory::cell_of(position_W(id)) : cell_of(id);
+}
+
+/// [m] The clearance by own sight, and by the map where there is none.
+double Planner::room(const PlanWorld& world, Id id) const {
+  const double d = clearance(world, id);
+  const Cell cell = coarse_of(id);
+  if (world.drawn == nullptr || world.memory.seen(cell)) return d;
+  return std::min(d, world.drawn_room(cell).value_or(d));
+}
+
 bool Planner::near_robot(Id id) const {
   return (position_W(id) - robot_W_).squaredNorm() < kAtRobot * kAtRobot;
 }
@@ -114,7 +139,7 @@ float Planner::heuristic(Id id) const {
 }
 
 void Planner::push(Id id, float g, Id parent) {
-  if (entries_.size() == kMostEntries) return;
+  if (entries_.size() == entries_.capacity()) return;
   Point& point = at(id);
   point.g = g;
   point.parent = parent;
@@ -146,103 +171,24 @@ float Planner::new_cost(const PlanWorld& world, Id id) {
     spent_ += kExactCost;
     d = roomiest(world.map, position_W(id), kAside, LocalMap::kReach).distance;
   }
-  const Cell cell = is_fine(id) ? BuildingMemory::cell_of(position_W(id)) : cell_of(id);
-  if (d < options_.cost.least) {
+  const Cell cell = coarse_of(id);
+  const StepCost& cost = options_.cost;
+  if (d < cost.least) {
     if (near_robot(id)) return kLeaving;
     const double room = kLenientRoom + (is_fine(id) ? 0 : kFromAfar);
     return options_.lenient && d >= room && !world.memory.seen_near(cell) ? kUnsure : -1;
   }
-  const double price = world.memory.seen(cell) ? 1 : StepCost::kUnseen;
   const double doubt = world.memory.doubtful(cell) ? StepCost::kDoubt : 0;
-  return static_cast<float>(price * options_.cost.of(d) + doubt);
-}
-
-/// True if the goal may lie at the point. An unseen one needs more room: it may be the inside of a
-/// thing.
-bool Planner::has_room(const PlanWorld& world, Id id) const {
-  const double d = clearance(world, id);
-  const Vec2 p_W = position_W(id);
-  if (!world.memory.seen(BuildingMemory::cell_of(p_W)))
-    return d >= options_.cost.least + kUnseenRoom;
-  if (d >= options_.cost.least) return true;
-  return options_.exact && is_fine(id) &&
-         roomiest(world.map, goal_W_, kAside, LocalMap::kReach).distance >= options_.cost.least;
-}
-
-/// The nearest point with room to stand, preferably a seen one. An unseen point may be the inside
-/// of the obstacle on the goal, and the robot would drive all around it to find out.
-Planner::Id Planner::free_point(const PlanWorld& world, Id wanted) const {
-  if (!is_fine(wanted)) return wanted;
-  Id best = wanted;
-  bool best_seen = false;
-  double least = std::numeric_limits<double>::infinity();
-  const int column = static_cast<int>(wanted % kFine);
-  const int row = static_cast<int>(wanted / kFine);
-  for (int y = row - kSearchFree; y <= row + kSearchFree; ++y) {
-    for (int x = column - kSearchFree; x <= column + kSearchFree; ++x) {
-      if (!is_inner(x, y)) continue;
-      const Id id = fine_id(x, y);
-      const bool seen = world.memory.seen(BuildingMemory::cell_of(position_W(id)));
-      const double far = std::hypot(x - column, y - row);
-      const bool nearer = seen == best_seen ? far < least : seen;
-      if (!nearer || clearance(world, id) < options_.cost.least) continue;
-      least = far;
-      best = id;
-      best_seen = seen;
-    }
+  if (world.memory.seen(cell)) return static_cast<float>(cost.of(d) + doubt);
+  const std::optional<double> drawn = world.drawn_room(cell);
+  if (!drawn) {
+    const double price = world.drawn == nullptr ? StepCost::kUnseen : StepCost::kUndrawn;
+    return static_cast<float>(price * cost.of(d) + doubt);
   }
-  return best;
-}
-
-/// The coarse lattice ends where nothing was seen: farther ways through unseen space are as good.
-void Planner::place_bounds(const BuildingMemory& memory) {
-  const Cell robot = BuildingMemory::cell_of(robot_W_);
-  const Cell goal = BuildingMemory::cell_of(goal_W_);
-  const auto low = [](int seen, int a, int b) {
-    return std::max(std::min({seen, a, b}) - kAroundSeen, a - kMostCoarse);
-  };
-  const auto high = [](int seen, int a, int b) {
-    return std::min(std::max({seen, a, b}) + kAroundSeen, a + kMostCoarse);
-  };
-  low_ = {low(memory.low().column, robot.column, goal.column),
-          low(memory.low().row, robot.row, goal.row)};
-  high_ = {high(memory.high().column, robot.column, goal.column),
-           high(memory.high().row, robot.row, goal.row)};
-}
-
-void Planner::start(const PlanWorld& world,
-                    const Vec2& robot_W,
-                    const Vec2& goal_W,
-                    const Options& options) {
-  corner_W_ = world.map.corner_W();
-  corner_ = BuildingMemory::cell_of(corner_W_ + Vec2(kStep, kStep));
-  options_ = options;
-  ++round_;
-  robot_W_ = robot_W;
-  robot_ = id_at(robot_W);
-  double share = 1;
-  for (int k = 0; k < 2; ++k) {
-    const double way = std::abs(goal_W[k] - robot_W[k]);
-    if (way > kFarthest) share = std::min(share, kFarthest / way);
-  }
-  goal_W_ = robot_W + share * (goal_W - robot_W);
-  root_ = id_at(goal_W_);
-  goal_taken_ = false;
-  const bool room = has_room(world, root_);
-  goal_tight_ = !room && options.try_tight && near_robot(root_);
-  if (!room && !goal_tight_) {
-    const Id free = free_point(world, root_);
-    goal_taken_ = share >= 1 && free != root_;
-    root_ = free;
-    if (goal_taken_) goal_W_ = position_W(root_);
-  }
-  place_bounds(world.memory);
-  entries_.clear();
-  std::ranges::fill(buckets_, 0U);
-  bucket_ = 0;
-  closest_W_ = goal_W_;
-  push(root_, 0, root_);
-  state_ = State::Searching;
+  const bool shut = *drawn < cost.least;
+  if (shut && options_.walls == DrawnWalls::Shut) return near_robot(id) ? kLeaving : -1;
+  const double wall = shut ? StepCost::kDrawnWall : 0;
+  return static_cast<float>(StepCost::kDrawn * cost.of(std::min(d, *drawn)) + doubt + wall);
 }
 
 Planner::State Planner::search(const PlanWorld& world, int budget) {
@@ -354,20 +300,6 @@ std::optional<double> Planner::cost_from(const Vec2& p_W) const {
   const Point& point = points_[id_at(p_W)];
   if (point.round != round_ || point.g < 0) return std::nullopt;
   return static_cast<double>(point.g);
-}
-
-void straighten(const LocalMap& map, double room, Recycled<Vec2>& path) {
-  const std::size_t size = path.size();
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < size;) {
-    path[kept++] = path[i];
-    std::size_t next = i + 1;
-    if (map.distance(path[i]) >= room) {
-      while (next + 1 < size && map.sees(path[i], path[next + 1], room)) ++next;
-    }
-    i = next;
-  }
-  while (path.size() > kept) path.pop_back();
 }
 
 }  // namespace algo

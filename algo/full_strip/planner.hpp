@@ -10,21 +10,23 @@
 
 #include "algo/full_strip/building_memory.hpp"
 #include "algo/full_strip/local_map.hpp"
+#include "algo/full_strip/plan_world.hpp"
 #include "algo/full_strip/step_cost.hpp"
 #include "algo/recycled.hpp"
 #include "algo/types.hpp"
 
 namespace algo {
 
-/// The places to plan over.
-struct PlanWorld {
-  const LocalMap& map;
-  const BuildingMemory& memory;
+/// How a search takes the walls of a known map that the robot has not seen itself.
+enum class DrawnWalls : std::uint8_t {
+  Shut,    // there is no way through them
+  Priced,  // they may be gone
 };
 
 /// A* from the goal to the robot, in bounded portions, over two lattices that are joined where they
-/// meet: one of 0.1 m over the inner tiles of the local map, and one of 0.2 m beyond them. Space
-/// that nobody has seen counts as free, at a price.
+/// meet: one of 0.1 m over the inner tiles of the local map, and one of 0.2 m beyond them. Where
+/// the robot has not looked, a known map tells the room; space of which nothing is known counts as
+/// free, at a price.
 ///
 /// A step costs its length x StepCost::of(clearance). Below the least clearance there is no way,
 /// except at the robot, which may stand anywhere.
@@ -34,20 +36,25 @@ class Planner {
 
   Planner();
   void reset() { state_ = State::Idle; }
+  /// Makes the lattice large enough for goals anywhere on `drawn`. Allocates; forgets the search.
+  void hold(const DrawnSpace& drawn);
 
   struct Options {
     StepCost cost{};
     bool exact = false;      // doubtful clearances are measured to the hits themselves
     bool try_tight = false;  // keep a goal without room right before the robot: the map may err
     bool lenient = false;    // narrow places that nobody has seen from nearby may be passed
+    DrawnWalls walls = DrawnWalls::Shut;
   };
   /// Begins a search. The nearest place with room replaces a goal without room; a goal farther than
-  /// kFarthest is replaced on the straight line to it.
+  /// farthest() is replaced on the straight line to it.
   void start(const PlanWorld& world,
              const Vec2& robot_W,
              const Vec2& goal_W,
              const Options& options);
-  static constexpr double kFarthest = 90;  // [m] along each axis
+  /// [m] along each axis: kFarthest without a map, and more on a large one.
+  double farthest() const { return farthest_; }
+  static constexpr double kFarthest = 90;  // [m]
   /// Expands up to `budget` lattice points.
   State search(const PlanWorld& world, int budget);
 
@@ -78,8 +85,8 @@ class Planner {
   static constexpr int kRim = BuildingMemory::kFineSide / 2;  // of them, along its outermost tiles
   static constexpr double kStep = 2 * LocalMap::kCell;        // [m] between fine points
   static constexpr int kCoarse = BuildingMemory::kTiles * BuildingMemory::kCoarseSide;
+  static constexpr int kMostCoarse = 4096;  // along the edge of the largest lattice: 819 m
   static constexpr Id kFineCount = Id{kFine} * kFine;
-  static constexpr Id kCount = kFineCount + Id{kCoarse} * kCoarse;
   using Cell = BuildingMemory::Cell;
 
   struct Point {
@@ -110,7 +117,14 @@ class Planner {
   Point& at(Id id);
   bool near_robot(Id id) const;
   float heuristic(Id id) const;
+  /// [m] On a lattice of `coarse` points along its edge.
+  static double farthest_on(int coarse) {
+    return kFarthest + (coarse - kCoarse) * BuildingMemory::kCoarse / 2;
+  }
+  void allocate(int coarse);
   double clearance(const PlanWorld& world, Id id) const;
+  Cell coarse_of(Id id) const;
+  double room(const PlanWorld& world, Id id) const;
   float cost_of(const PlanWorld& world, Id id);
   float new_cost(const PlanWorld& world, Id id);
   void push(Id id, float g, Id parent);
@@ -120,12 +134,15 @@ class Planner {
   void expand_coarse(const PlanWorld& world, Id id);
   bool has_room(const PlanWorld& world, Id id) const;
   Id free_point(const PlanWorld& world, Id wanted) const;
-  void place_bounds(const BuildingMemory& memory);
+  Id free_coarse(const PlanWorld& world, Id wanted) const;
+  void place_bounds(const PlanWorld& world);
 
   State state_ = State::Idle;
   bool goal_taken_ = false;
   bool goal_tight_ = false;
   Options options_{};
+  int coarse_ = 0;       // coarse points along the lattice's edge, a power of two
+  double farthest_ = 0;  // [m]
   Vec2 corner_W_{0, 0};  // of the fine lattice
   Cell corner_{};        // the same, in coarse cells
   Vec2 robot_W_{0, 0};
@@ -143,8 +160,8 @@ class Planner {
   std::size_t bucket_ = 0;
 };
 
-/// Removes points of `path` wherever the straight line past them keeps `room` [m]. This removes the
-/// lattice's corners in open space.
-void straighten(const LocalMap& map, double room, Recycled<Vec2>& path);
+/// Removes points of `path` wherever the straight line past them keeps `room` [m], and `least` [m]
+/// from walls that only the map shows. This removes the lattice's corners in open space.
+void straighten(const PlanWorld& world, double room, double least, Recycled<Vec2>& path);
 
 }  // namespace algo

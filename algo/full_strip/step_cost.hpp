@@ -24,7 +24,11 @@ struct StepCost {
   static constexpr double kEasy = 0.08;    // [m] beside the hull; less needs care
   static constexpr double kTight = 12;     // [m per m] more where nothing is left beside the hull
   static constexpr double kUnseen = 1.3;   // times the cost where no beam has been
-  static constexpr double kDoubt = 30;     // [m per m] more where something may stand
+  static constexpr double kUndrawn = 2;    // times the cost where a known map shows nothing either
+  static constexpr double kDrawn = 1.1;    // times the cost where a map alone shows free space
+  static constexpr double kDrawnWall =
+      30;                               // [m per m] more where a map alone shows too little room
+  static constexpr double kDoubt = 30;  // [m per m] more where something may stand
 
   /// [m per m] with clearance `d` [m].
   double of(double d) const {

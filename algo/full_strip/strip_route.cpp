@@ -24,6 +24,7 @@ constexpr double kGives = 0.08;   // [m] by which the strip stays inside its res
 constexpr double kSameWay = 0.6;  // [m] from the old strip's end: a path past it goes on from there
 constexpr double kAgainAfter = 1.0;     // [s] after a search without a way
 constexpr double kDoubtTime = 1.5;      // [s] for which the map drops what it doubts
+constexpr double kDoubtWalls = 20;      // [s] for which walls of a known map may be gone
 constexpr double kWatchFrom = 1.2;      // [m] before a place that was shut,
 constexpr double kWatchTime = 20;       // [s]
 constexpr double kThere = 0.3;          // [m]
@@ -47,6 +48,8 @@ void StripRoute::set_goal(const Vec2& goal_W, double now) {
   closure_.reset();
   watch_.reset();
   aim_ = Aim::Goal;
+  walls_ = DrawnWalls::Shut;
+  doubted_until_ = now;
   doubts_ = false;
   goal_taken_ = false;
   tight_since_.reset();
@@ -80,6 +83,10 @@ void StripRoute::update(const RouteSettings& settings,
 
 StepCost StripRoute::step_cost() const {
   return StepCost::of_hull(settings_.half_width, settings_.round);
+}
+
+Planner::Options StripRoute::plan_options() const {
+  return {.cost = step_cost(), .exact = settings_.round, .walls = walls_};
 }
 
 /// [m] Distance from the end of `strip` to the goal.
@@ -136,14 +143,11 @@ void StripRoute::plan(const PlanWorld& world, const Vec2& here_W, double now) {
 void StripRoute::start_search(const PlanWorld& world, const Vec2& here_W, double now) {
   aim_ = Aim::Goal;
   const double patience = ProgressWatch::time_for(kTryTight, settings_.max_v);
-  const bool try_tight = !tight_since_ || now - *tight_since_ < patience;
-  planner_.start(world,
-                 here_W,
-                 *goal_W_,
-                 {.cost = step_cost(),
-                  .exact = settings_.round,
-                  .try_tight = try_tight,
-                  .lenient = lenient()});
+  if (now >= doubted_until_ && !no_way()) walls_ = DrawnWalls::Shut;
+  Planner::Options options = plan_options();
+  options.try_tight = !tight_since_ || now - *tight_since_ < patience;
+  options.lenient = lenient();
+  planner_.start(world, here_W, *goal_W_, options);
   if (planner_.goal_tight() && !tight_since_) tight_since_ = now;
   next_plan_ = now + settings_.plan_period;
 }
@@ -175,6 +179,7 @@ void StripRoute::fail(const PlanWorld& world, const Vec2& here_W, double now) {
     next_plan_ = now + kAgainAfter;
     return;
   }
+  if (doubt_walls(world, here_W, now)) return;
   if (failures_ < kSurely) ++failures_;
   if (failures_ == 1) {
     doubts_ = true;
@@ -183,6 +188,15 @@ void StripRoute::fail(const PlanWorld& world, const Vec2& here_W, double now) {
   if (!no_way()) return;
   next_plan_ = now + kAgainAfter;
   wait_for_way(world, here_W, now);
+}
+
+/// The map may be wrong: if its walls leave no way, the robot drives to see whether they are there.
+bool StripRoute::doubt_walls(const PlanWorld& world, const Vec2& here_W, double now) {
+  if (world.drawn == nullptr || walls_ == DrawnWalls::Priced) return false;
+  walls_ = DrawnWalls::Priced;
+  doubted_until_ = now + kDoubtWalls;
+  start_search(world, here_W, now);
+  return true;
 }
 
 /// A door may open: the robot waits at one that it saw shut, for a while, and then at the place
@@ -196,7 +210,7 @@ void StripRoute::wait_for_way(const PlanWorld& world, const Vec2& here_W, double
   }
   if (!watch_) {
     aim_ = Aim::Reach;
-    planner_.start(world, *goal_W_, here_W, {.cost = step_cost(), .exact = settings_.round});
+    planner_.start(world, *goal_W_, here_W, plan_options());
     return;
   }
   if (!watch_->since && (watch_->from_W - here_W).norm() < kThere) watch_->since = now;
@@ -212,7 +226,7 @@ void StripRoute::wait_for_way(const PlanWorld& world, const Vec2& here_W, double
 
 void StripRoute::search_for_watch(const PlanWorld& world, const Vec2& here_W) {
   aim_ = Aim::Watch;
-  planner_.start(world, here_W, watch_->from_W, {.cost = step_cost(), .exact = settings_.round});
+  planner_.start(world, here_W, watch_->from_W, plan_options());
 }
 
 /// Makes the plan the strip if there is none, or if it is clearly better than the present one.
@@ -221,7 +235,7 @@ void StripRoute::take_plan(const PlanWorld& world, const Vec2& here_W) {
   if (aim_ == Aim::Goal && !path_.unsure) failures_ = 0;
   line_W_.clear();
   for (std::size_t i = 0; i < path_.local; ++i) line_W_.push_back(path_.points_W[i]);
-  straighten(world.map, settings_.strip.rest_distance, line_W_);
+  straighten(world, settings_.strip.rest_distance, step_cost().least, line_W_);
   candidate_.lay(line_W_);
   candidate_.follow(here_W);
   candidate_.relax(world.map, settings_.strip, kSweepsNew);

@@ -27,6 +27,8 @@ struct RouteSettings {
 /// map each tick, and plans again where it breaks or a new path is clearly better.
 class StripRoute {
  public:
+  /// Makes room for plans on the whole of a map. Allocates.
+  void hold(const DrawnSpace& drawn) { planner_.hold(drawn); }
   /// Without a goal.
   void reset();
   /// Forgets everything about the way to the goal before.
@@ -53,6 +55,10 @@ class StripRoute {
   std::optional<Vec2> watched_W() const {
     return watch_ && strip_.empty() ? std::optional(watch_->at_W) : std::nullopt;
   }
+  /// The search leads to the nearest place with room instead of the goal.
+  bool goal_replaced() const { return planner_.goal_taken(); }
+  /// By the map alone there is no way, so that the robot drives to see whether its walls are there.
+  bool doubts_walls() const { return walls_ == DrawnWalls::Priced; }
   /// There is no strip yet, and the search goes on.
   bool waits_for_plan() const {
     return strip_.empty() && !no_way() && planner_.state() == Planner::State::Searching;
@@ -75,10 +81,12 @@ class StripRoute {
   void fail(const PlanWorld& world, const Vec2& here_W, double now);
   void note_closure(const PlanWorld& world);
   void wait_for_way(const PlanWorld& world, const Vec2& here_W, double now);
+  bool doubt_walls(const PlanWorld& world, const Vec2& here_W, double now);
   void search_for_watch(const PlanWorld& world, const Vec2& here_W);
   bool is_better(const LocalMap& map, bool was_taken) const;
   bool is_extended() const;
   StepCost step_cost() const;
+  Planner::Options plan_options() const;
   double left(const NodeStrip& strip) const;
 
   RouteSettings settings_{};
@@ -102,6 +110,8 @@ class StripRoute {
   std::optional<Watch> watch_{};
   bool doubts_ = false;
   int failures_ = 0;  // searches in a row without a way
+  DrawnWalls walls_ = DrawnWalls::Shut;
+  double doubted_until_ = 0;  // [s] run clock: then the walls of the map count as shut again
   bool goal_taken_ = false;
   std::optional<double> tight_since_{};  // [s] since when it tries for a goal without room
   double broken_at_ = -1;                // [m]

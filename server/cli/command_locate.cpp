@@ -26,16 +26,21 @@ struct LocateCommand {
 };
 
 int run_study(LocateCommand& command) {
-  std::vector<mapping::LocateRun> runs;
+  mapping::LocateStudy study;
   {
     ProgressLine progress;
-    command.options.pool.progress = [&](std::size_t done, std::size_t all) {
-      progress.show(fmt::format("{} of {} drives", done, all));
+    const auto count = [&](const char* what) {
+      command.options.pool.progress = [&progress, what](std::size_t done, std::size_t all) {
+        progress.show(fmt::format("{} of {} drives{}", done, all, what));
+      };
     };
-    runs = study_locate(command.options);
+    count("");
+    study.runs = study_locate(command.options);
+    count(" round dead ends");
+    study.dead_ends = study_dead_ends(command.options);
   }
-  if (!command.markdown.empty()) write_markdown(runs, command.markdown);
-  fmt::print("{}\n", command.as_json ? to_json(runs).dump(2) : to_text(runs));
+  if (!command.markdown.empty()) write_markdown(study, command.markdown);
+  fmt::print("{}\n", command.as_json ? to_json(study).dump(2) : to_text(study));
   return kReached;
 }
 

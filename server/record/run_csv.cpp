@@ -11,6 +11,7 @@
 #include "server/record/csv_cells.hpp"
 #include "server/record/frame_codec.hpp"
 #include "server/record/frame_columns.hpp"
+#include "server/record/map_columns.hpp"
 #include "server/record/run_json.hpp"
 #include "server/run/json_limits.hpp"
 #include "server/run/run_spec.hpp"
@@ -134,10 +135,15 @@ void RunCsv::learn(const algo::Telemetry& t) {
   for (const auto& scan : t.observation.scans) add_mount(scanners_, scan.mount_R);
   joints_ = std::max<std::size_t>(joints_, t.command.joints);
   arm_ = arm_ || t.arm.present;
+  map_ = map_ || t.observation.map_pose.has_value();
 }
 
 std::span<const FrameColumn> RunCsv::own_arm() const {
   return arm_ ? arm_columns() : std::span<const FrameColumn>{};
+}
+
+std::span<const FrameColumn> RunCsv::own_map() const {
+  return map_ ? map_columns() : std::span<const FrameColumn>{};
 }
 
 std::string RunCsv::header() const {
@@ -160,6 +166,7 @@ std::string RunCsv::header() const {
   add_each("bumper", bumpers_.size(), "");
   add_each("joint_rate", joints_, "rad/s");
   for (const FrameColumn& column : own_arm()) add(column.name, column.unit);
+  for (const FrameColumn& column : own_map()) add(column.name, column.unit);
   for (const auto& measure : measures_.columns()) add(measure.name, measure.unit);
   if (options_.arrays) {
     for (std::size_t i = 0; i < scanners_.size(); ++i) {
@@ -228,9 +235,11 @@ std::optional<std::uint64_t> RunCsv::lines(db::RunReader& reader,
     }
     put_rings(out, t.observation);
     put_joints(out, t.command, joints_);
-    for (const FrameColumn& column : own_arm()) {
-      out += ',';
-      column.put(out, t);
+    for (const auto& own : {own_arm(), own_map()}) {
+      for (const FrameColumn& column : own) {
+        out += ',';
+        column.put(out, t);
+      }
     }
     measures_.read(frame, measures);
     for (const double measure : measures) {

@@ -46,6 +46,7 @@ class RunCsv {
 
   void learn(const algo::Telemetry& t);
   std::span<const FrameColumn> own_arm() const;
+  std::span<const FrameColumn> own_map() const;
   void put_rings(std::string& out, const algo::Observation& o) const;
   void put_arrays(std::string& out, const algo::Telemetry& t) const;
 
@@ -56,6 +57,7 @@ class RunCsv {
   bool infrared_ = false;
   std::size_t joints_ = 0;
   bool arm_ = false;
+  bool map_ = false;  // the robot knows a map
   FrameMeasures measures_{};
 };
 

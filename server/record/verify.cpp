@@ -11,6 +11,7 @@
 #include "algo/pipeline/pipeline.hpp"
 #include "server/record/frame_codec.hpp"
 #include "server/record/run_json.hpp"
+#include "server/run/drawn_map.hpp"
 #include "server/run/json_limits.hpp"
 #include "server/run/obstacle_json.hpp"
 #include "server/run/run_spec.hpp"
@@ -69,6 +70,10 @@ algo::Pipeline pipeline_of(const db::RunRow& row) {
   config.filter = stored_filter(row);
   config.parameters = stored_parameters(row);
   if (spec.arm) config.declared = declared_in(document);
+  if (document.contains("map")) {
+    config.run.map =
+        std::make_shared<const algo::DrawnSpace>(drawn_space_from_json(document["map"]));
+  }
   if (document.contains("answers")) {
     return {config, spec, recorded(config.controller)};
   }

@@ -1,20 +1,35 @@
 // server/run/map_robot.cpp: odometry and scans in, the pose on the map out.
 #include "server/run/map_robot.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "algo/perceive.hpp"
+#include "server/run/drawn_map.hpp"
 #include "server/run/map_file.hpp"
 
 namespace server {
+namespace {
+
+constexpr double kJump = 0.3;      // [m] a correction after which what was seen lies elsewhere
+constexpr double kJumpTurn = 0.1;  // [rad]
+
+bool is_jump(const algo::Pose2& from_W, const algo::Pose2& to_W) {
+  return (to_W.position() - from_W.position()).norm() > kJump ||
+         std::abs(algo::wrap_angle(to_W.heading - from_W.heading)) > kJumpTurn;
+}
+
+}  // namespace
 
 std::shared_ptr<const KnownMap> known_map(const std::filesystem::path& yaml) {
   const algo::OccupancyMap cells = read_map(yaml);
   const std::string name = yaml.filename().string();
-  return std::make_shared<const KnownMap>(KnownMap{std::filesystem::absolute(yaml).string(),
-                                                   name,
-                                                   seen_walls(cells),
-                                                   map_document(cells, name)});
+  return std::make_shared<const KnownMap>(
+      KnownMap{std::filesystem::absolute(yaml).string(),
+               name,
+               seen_walls(cells),
+               map_document(cells, name),
+               std::make_shared<const algo::DrawnSpace>(drawn_space(cells))});
 }
 
 MapRobot::MapRobot(std::unique_ptr<algo::Robot> robot,
@@ -65,13 +80,14 @@ void MapRobot::locate(algo::Observation& observation) {
 void MapRobot::correct(algo::Observation& observation) {
   const algo::Pose2 wheels = observation.odometry.pose;
   const bool located = localizer_.located();
-  if (located && !located_) ++epoch_;
-  located_ = located;
+  const algo::Pose2 predicted_W = algo::compose(pose_W_, algo::pose_step(wheels_, wheels));
   if (located) {
     pose_W_ = algo::compose(localizer_.best().pose_M(), algo::pose_step(*scanned_, wheels));
+    if (!located_ || is_jump(predicted_W, pose_W_)) ++epoch_;
   } else {
-    pose_W_ = algo::compose(pose_W_, algo::pose_step(wheels_, wheels));
+    pose_W_ = predicted_W;
   }
+  located_ = located;
   wheels_ = wheels;
   observation.odometry.pose = pose_W_;
   algo::MapPose& told = observation.map_pose.emplace();

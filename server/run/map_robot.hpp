@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "algo/drawn_space.hpp"
 #include "algo/full_strip/scan_points.hpp"
 #include "algo/mapping/map_localizer.hpp"
 #include "algo/mapping/occupancy_map.hpp"
@@ -19,6 +20,8 @@ struct KnownMap {
   std::string name{};      // without the folder, for people
   algo::Submap walls;      // for the robot
   std::string document{};  // for the page: JSON, as in docs/interfaces.md
+  /// For planners; null: they plan without it.
+  std::shared_ptr<const algo::DrawnSpace> space{};
 };
 /// Throws std::runtime_error with a sentence.
 std::shared_ptr<const KnownMap> known_map(const std::filesystem::path& yaml);

@@ -12,6 +12,7 @@
 #include "algo/pipeline/controllers.hpp"
 #include "algo/pipeline/parameter_table.hpp"
 #include "server/run/arm_json.hpp"
+#include "server/run/drawn_map.hpp"
 #include "server/run/fleet_robot.hpp"
 #include "server/run/ground_json.hpp"
 #include "server/run/hardware.hpp"
@@ -254,7 +255,9 @@ algo::PipelineConfig pipeline_config(const RunSpec& spec) {
   return {.controller = spec.scenario.controller,
           .filter = *algo::find_filter(spec.scenario.filter),
           .parameters = spec.parameters,
-          .run = {.scenario = spec.scenario.name, .seed = spec.seed},
+          .run = {.scenario = spec.scenario.name,
+                  .seed = spec.seed,
+                  .map = spec.map ? spec.map->space : nullptr},
           .declared = declared_of(spec.scenario)};
 }
 
@@ -362,6 +365,9 @@ json run_document(const RunSpec& spec, const algo::RobotSpec& robot) {
   json out = {
       {"scenario", to_json(spec.scenario)}, {"source", source_of(spec)}, {"robot", to_json(robot)}};
   if (drives_from_outside(spec)) out["answers"] = "recorded";
+  if (spec.map && spec.map->space && !drives_from_outside(spec)) {
+    out["map"] = to_json(*spec.map->space);
+  }
   for (const algo::Obstacle& other : sim::other_robots(spec.scenario)) {
     out["others"].push_back(to_json(other));
   }

@@ -92,8 +92,8 @@ double time_limit(const RunSpec& spec);
 
 /// The document in the run's database row: the scenario as run, and the robot's spec, from which
 /// replay rebuilds the pipeline without a world. `others`, if any, are the scenario's other robots
-/// as obstacles at their starts. `answers`: the frames hold the answers of a
-/// controller outside the program.
+/// as obstacles at their starts. `map`: the room on the map that it drives by. `answers`: the
+/// frames hold the answers of a controller outside the program.
 nlohmann::json run_document(const RunSpec& spec, const algo::RobotSpec& robot);
 nlohmann::json to_json(const algo::RobotSpec& robot);
 algo::RobotSpec robot_spec_from_json(const nlohmann::json& value);

@@ -95,48 +95,115 @@ experiment::Table table_of(const std::vector<LocateRun>& runs) {
   return table;
 }
 
+experiment::Table table_of(const std::vector<DeadEndRun>& runs) {
+  experiment::Table table{
+      .header = {"building", "plans", "at the goal", "time s", "way m", "goal off, worst m"}};
+  for (const char* drawing : kDrawings) {
+    for (const bool planned : {false, true}) {
+      double count = 0, reached = 0, time = 0, way = 0, goal_off = 0;
+      for (const DeadEndRun& run : runs) {
+        if (run.drawing != drawing || run.planned != planned) continue;
+        ++count;
+        time += run.time;
+        way += run.way;
+        goal_off = std::max(goal_off, run.goal_off);
+        if (run.outcome == algo::Outcome::Reached && run.goal_off <= 2 * kGoalRing) ++reached;
+      }
+      if (count == 0) continue;
+      table.rows.push_back({drawing,
+                            planned ? "by sight and map" : "by sight",
+                            fmt::format("{:.0f} of {:.0f}", reached, count),
+                            fmt::format("{:.0f}", time / count),
+                            fmt::format("{:.0f}", way / count),
+                            fmt::format("{:.2f}", goal_off)});
+    }
+  }
+  return table;
+}
+
 }  // namespace
 
-std::string to_text(const std::vector<LocateRun>& runs) {
-  return to_text(table_of(runs));
+std::string to_text(const LocateStudy& study) {
+  return to_text(table_of(study.runs)) + '\n' + to_text(table_of(study.dead_ends));
 }
 
-nlohmann::json to_json(const std::vector<LocateRun>& runs) {
-  nlohmann::json out = nlohmann::json::array();
-  for (const LocateRun& run : runs) {
-    out.push_back({{"building", run.drawing},
-                   {"by", word(run.by)},
-                   {"seed", run.seed},
-                   {"outcome", algo::name(run.outcome)},
-                   {"goal_off_m", run.goal_off},
-                   {"worst_off_m", run.worst_off},
-                   {"located", run.located},
-                   {"false_s", run.false_time},
-                   {"within_3_deviations", run.within_3},
-                   {"passenger_found_m", run.passenger_found},
-                   {"passenger_false_s", run.passenger_false}});
+nlohmann::json to_json(const LocateStudy& study) {
+  nlohmann::json runs = nlohmann::json::array();
+  for (const LocateRun& run : study.runs) {
+    runs.push_back({{"building", run.drawing},
+                    {"by", word(run.by)},
+                    {"seed", run.seed},
+                    {"outcome", algo::name(run.outcome)},
+                    {"goal_off_m", run.goal_off},
+                    {"worst_off_m", run.worst_off},
+                    {"located", run.located},
+                    {"false_s", run.false_time},
+                    {"within_3_deviations", run.within_3},
+                    {"passenger_found_m", run.passenger_found},
+                    {"passenger_false_s", run.passenger_false}});
   }
-  return out;
+  nlohmann::json dead_ends = nlohmann::json::array();
+  for (const DeadEndRun& run : study.dead_ends) {
+    dead_ends.push_back({{"building", run.drawing},
+                         {"plans_by_map", run.planned},
+                         {"seed", run.seed},
+                         {"outcome", algo::name(run.outcome)},
+                         {"time_s", run.time},
+                         {"way_m", run.way},
+                         {"goal_off_m", run.goal_off}});
+  }
+  return {{"runs", std::move(runs)}, {"dead_ends", std::move(dead_ends)}};
 }
 
-void write_markdown(const std::vector<LocateRun>& runs, const std::filesystem::path& file) {
+namespace {
+
+/// The true paths of one building's first seed.
+template <typename Run, typename Words>
+std::vector<experiment::DrawnPath> paths_of(const std::vector<Run>& runs,
+                                            const std::string& drawing,
+                                            const Words& words) {
+  std::vector<experiment::DrawnPath> paths;
+  std::uint64_t seed = 0;
+  for (const Run& run : runs) {
+    if (run.drawing != drawing) continue;
+    if (paths.empty()) seed = run.seed;
+    const std::string told = words(run);
+    if (run.seed == seed && !told.empty()) paths.push_back({told, run.track_W, paths.size()});
+  }
+  return paths;
+}
+
+}  // namespace
+
+void write_markdown(const LocateStudy& study, const std::filesystem::path& file) {
   const std::filesystem::path pictures = reproduce::folder_beside(file, "pictures/maps");
   std::string section(kLocateMarks.begin);
-  section += to_markdown(table_of(runs));
+  const auto add_picture = [&](const std::string& name,
+                               const std::string& title,
+                               const Drawing& drawing,
+                               const std::vector<experiment::DrawnPath>& paths) {
+    write_text(pictures / (name + ".svg"),
+               draw_paths(title, scenario_of(drawing), kGoalRing, paths));
+    section += fmt::format("\n![{}](pictures/maps/{}.svg)\n", title, name);
+  };
+  const std::uint64_t seed = study.runs.empty() ? 1 : study.runs.front().seed;
+  section += to_markdown(table_of(study.runs));
   for (const char* drawing : kDrawings) {
-    std::vector<experiment::DrawnPath> paths;
-    std::uint64_t seed = 0;
-    for (const LocateRun& run : runs) {
-      const bool first = paths.empty() && run.drawing == drawing;
-      if (first) seed = run.seed;
-      if (run.drawing != drawing || run.seed != seed || run.by == DrivesBy::MapLost) continue;
-      paths.push_back({word(run.by), run.track_W, paths.size()});
-    }
-    const std::string name = fmt::format("{}.svg", drawing);
-    const std::string title = fmt::format("{}, seed {}: true paths", drawing, seed);
-    write_text(pictures / name,
-               draw_paths(title, scenario_of(drawing_of(drawing, seed)), kGoalRing, paths));
-    section += fmt::format("\n![{}](pictures/maps/{})\n", title, name);
+    add_picture(drawing,
+                fmt::format("{}, seed {}: true paths", drawing, seed),
+                drawing_of(drawing, seed),
+                paths_of(study.runs, drawing, [](const LocateRun& run) -> std::string {
+                  return run.by == DrivesBy::MapLost ? "" : word(run.by);
+                }));
+  }
+  section += '\n' + to_markdown(table_of(study.dead_ends));
+  for (const char* drawing : kDrawings) {
+    add_picture(fmt::format("{}-dead-end", drawing),
+                fmt::format("{} with a dead end, seed {}: true paths", drawing, seed),
+                dead_end_of(drawing, seed),
+                paths_of(study.dead_ends, drawing, [](const DeadEndRun& run) {
+                  return std::string(run.planned ? "planned by sight and map" : "by sight");
+                }));
   }
   section += kLocateMarks.end;
   reproduce::put_marked(file, kLocateMarks, section);

@@ -2,48 +2,23 @@
 #include "server/lab/mapping/locate_study.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <memory>
-#include <variant>
 
 #include "algo/mapping/map_localizer.hpp"
 #include "algo/perceive.hpp"
 #include "server/record/headless.hpp"
-#include "server/run/map_robot.hpp"
 
 namespace server::mapping {
 namespace {
 
 using algo::Vec2;
 
-constexpr double kMapCell = 0.05;      // [m]
 constexpr double kFalsePose = 0.5;     // [m]
 constexpr double kTrackSpacing = 0.2;  // [m]
 constexpr double kScannerRange = 30;   // [m] as the scanner LMS200 has it in centimetres
 constexpr double kTimeLimit = 600;     // [s]
 constexpr double kLostTime = 60;       // [s] after which a robot that was never located gives up
-
-/// The corners of a piece on a map: of a wall, its middle line.
-std::vector<Vec2> drawn(const algo::Obstacle& piece) {
-  const auto* wall = std::get_if<algo::Wall>(&piece.shape);
-  if (wall == nullptr) return algo::outline_W(piece);
-  return {algo::to_parent(piece.pose_W, Vec2(-wall->length / 2, 0)),
-          algo::to_parent(piece.pose_W, Vec2(wall->length / 2, 0))};
-}
-
-/// The map of `pieces`. Where nothing stands is left unknown, as nothing asks for it.
-std::shared_ptr<const KnownMap> map_of(const std::vector<Piece>& pieces) {
-  algo::OccupancyMap map(kMapCell);
-  for (const Piece& piece : pieces) {
-    const std::vector<Vec2> outline_W = drawn(piece.obstacle);
-    for (std::size_t k = 0; k < outline_W.size(); ++k) {
-      const Vec2 edge = outline_W[(k + 1) % outline_W.size()] - outline_W[k];
-      const int points = std::max(1, static_cast<int>(edge.norm() / (kMapCell / 2)));
-      for (int i = 0; i < points; ++i) map.mark_wall(outline_W[k] + edge * i / points);
-    }
-  }
-  return std::make_shared<const KnownMap>(KnownMap{.walls = algo::Submap(map)});
-}
 
 /// What believed poses are worth.
 struct Judged {
@@ -168,7 +143,7 @@ std::vector<LocateRun> study_locate(const LocateOptions& options) {
     overrides.seed = run.seed;
     overrides.lost = run.by == DrivesBy::MapLost;
     if (run.by != DrivesBy::Wheels) {
-      overrides.map = map_of(outdated(drawing, options.wrong, run.seed));
+      overrides.map = map_of(outdated(drawing, options.wrong, run.seed), drawing, true);
     }
     drive(make_spec(scenario_of(drawing), overrides), run);
   });

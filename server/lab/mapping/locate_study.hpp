@@ -5,14 +5,17 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "algo/metrics.hpp"
 #include "algo/types.hpp"
 #include "server/experiment/pool.hpp"
 #include "server/lab/mapping/corridor_walls.hpp"
+#include "server/run/map_robot.hpp"
 #include "server/run/run_spec.hpp"
 
 namespace server::mapping {
@@ -38,6 +41,17 @@ enum class DrivesBy : std::uint8_t {
   Map,      // from a known start
   MapLost,  // from an unknown start, at which it stands until it is located
 };
+
+/// "offices" with the corridor to the goal shut 11 m before it; "hall" with a wall along its middle
+/// that is open at one end; "wings" from the end of one wing to the end of the other. The straight
+/// way to the goal leads into a dead end.
+Drawing dead_end_of(const std::string& name, std::uint64_t seed);
+
+/// The map of `pieces`, with free cells wherever a robot could get in the true building. `planned`:
+/// planners get it too.
+std::shared_ptr<const KnownMap> map_of(const std::vector<Piece>& pieces,
+                                       const Drawing& truth,
+                                       bool planned);
 
 struct LocateRun {
   std::string drawing{};
@@ -68,11 +82,31 @@ sim::Scenario scenario_of(const Drawing& drawing);
 /// Drives the way of each drawing with each seed, by each of DrivesBy.
 std::vector<LocateRun> study_locate(const LocateOptions& options);
 
-/// A row for each drawing and DrivesBy, over the seeds.
-std::string to_text(const std::vector<LocateRun>& runs);
-nlohmann::json to_json(const std::vector<LocateRun>& runs);
-/// Puts the table into `file`, and a picture of each drawing's first seed into pictures/maps/
+/// A drive by the map to a goal behind a dead end.
+struct DeadEndRun {
+  std::string drawing{};
+  bool planned = false;  // the planner has the map too
+  std::uint64_t seed = 0;
+  algo::Outcome outcome = algo::Outcome::Running;
+  double time = 0;                    // [s]
+  double way = 0;                     // [m]
+  double goal_off = 0;                // [m] at the end
+  std::vector<algo::Vec2> track_W{};  // true
+};
+/// Drives each of dead_end_of() with each seed, with the map for the planner and without.
+std::vector<DeadEndRun> study_dead_ends(const LocateOptions& options);
+
+/// Both parts of the study.
+struct LocateStudy {
+  std::vector<LocateRun> runs{};
+  std::vector<DeadEndRun> dead_ends{};
+};
+/// A row for each drawing and DrivesBy, over the seeds; then one for each dead end, with the map
+/// for the planner and without.
+std::string to_text(const LocateStudy& study);
+nlohmann::json to_json(const LocateStudy& study);
+/// Puts the tables into `file`, and a picture of each drawing's first seed into pictures/maps/
 /// beside it.
-void write_markdown(const std::vector<LocateRun>& runs, const std::filesystem::path& file);
+void write_markdown(const LocateStudy& study, const std::filesystem::path& file);
 
 }  // namespace server::mapping

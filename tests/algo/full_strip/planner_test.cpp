@@ -213,8 +213,9 @@ algo::Recycled<Vec2> path_of(std::initializer_list<Vec2> points) {
 
 TEST(Straighten, LeavesNoLatticeCornerInFreeSpace) {
   const LocalMap map;
+  const BuildingMemory memory;
   algo::Recycled<Vec2> path = path_of({{0, 0}, {1, 1}, {2, 2}, {3, 2}, {4, 2}});
-  algo::straighten(map, 0.75, path);
+  algo::straighten({map, memory}, 0.75, 0.3, path);
   ASSERT_EQ(path.size(), 2u);
   EXPECT_EQ(path[0], Vec2(0, 0));
   EXPECT_EQ(path[1], Vec2(4, 2));
@@ -223,10 +224,11 @@ TEST(Straighten, LeavesNoLatticeCornerInFreeSpace) {
 /// Around the end of a wall, the smoothed line may come no nearer than the path itself.
 TEST(Straighten, KeepsItsClearanceToStandingObstacles) {
   LocalMap map;
+  const BuildingMemory memory;
   wall(map, {2, -3}, {2, 0});
   algo::Recycled<Vec2> path =
       path_of({{0, 0}, {0.5, 0.5}, {1, 1}, {2, 1}, {3, 1}, {3.5, 0.5}, {4, 0}});
-  algo::straighten(map, 0.75, path);
+  algo::straighten({map, memory}, 0.75, 0.3, path);
   EXPECT_LT(path.size(), 7u);
   for (std::size_t i = 1; i < path.size(); ++i) {
     for (int k = 0; k <= 20; ++k) {
@@ -238,10 +240,11 @@ TEST(Straighten, KeepsItsClearanceToStandingObstacles) {
 /// With less clearance than that, the path stays as found.
 TEST(Straighten, TouchesNothingInANarrowPassage) {
   LocalMap map;
+  const BuildingMemory memory;
   wall(map, {-1, 0.6}, {6, 0.6});
   wall(map, {-1, -0.6}, {6, -0.6});
   algo::Recycled<Vec2> path = path_of({{0, 0}, {1, 0.1}, {2, 0}});
-  algo::straighten(map, 0.75, path);
+  algo::straighten({map, memory}, 0.75, 0.3, path);
   EXPECT_EQ(path.size(), 3u);
 }
 

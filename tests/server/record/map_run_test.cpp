@@ -4,9 +4,12 @@
 
 #include "tests/db/store_files.hpp"
 #include "tests/server/map_room.hpp"
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "server/record/headless.hpp"
+#include "server/record/run_csv.hpp"
+#include "server/record/run_json.hpp"
 #include "server/record/verify.hpp"
 
 namespace server {
@@ -31,6 +34,21 @@ TEST_F(MapRun, AStoredRunIsRepeatedWithoutTheMap) {
   EXPECT_GT(verified.compared, 500U);
   EXPECT_EQ(verified.difference.value_or(""), "");
   EXPECT_EQ(verified.incomplete.value_or(""), "");
+  const auto row = reader.get(run);
+  ASSERT_TRUE(row);
+  EXPECT_FALSE(to_json(*row)["document"].contains("map"));
+
+  // While it is lost it has a fix and a pose by the wheels, and no variances.
+  const RunCsv csv(reader, *row);
+  std::string lines;
+  std::optional<std::uint64_t> from = 0;
+  while (from) from = csv.lines(reader, *from, 1000, lines);
+  const std::string header = csv.header();
+  EXPECT_THAT(header,
+              testing::HasSubstr("map.fix,map.places,map.epoch,map.xx,map.xy,map.yy,map.turn,"
+                                 "map.fit,wheels.x,wheels.y,wheels.heading"));
+  EXPECT_THAT(lines, testing::HasSubstr(",searching,0,0,,,,,,"));
+  EXPECT_THAT(lines, testing::HasSubstr(",located,1,1,"));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@ import { View } from "./view";
 
 const kShare95 = 2.448; // deviations of a pose in the plane that 95 of 100 lie within
 const kLeastAxis = 3;   // [px]
+export const kOpacity = 0.7;
 
 /** Walls and free cells as two pictures, each to be filled with a colour of the theme. */
 interface Shown { bounds: Bounds; picture: HTMLCanvasElement; wall: string; free: string; map: MapDocument }
@@ -44,18 +45,24 @@ function paint(s: Shown): void {
   }
 }
 
-export function draw_map(g: Context, view: View, palette: Palette): void {
-  if (!shown) return;
-  if (shown.wall !== palette.muted || shown.free !== palette.panel) {
+/** The map in the colours of `palette`; null: none. */
+export function map_picture(palette: Palette): Readonly<Shown> | null {
+  if (shown && (shown.wall !== palette.muted || shown.free !== palette.panel)) {
     shown.wall = palette.muted;
     shown.free = palette.panel;
     paint(shown);
   }
-  const { min_x, max_y, max_x, min_y } = shown.bounds;
+  return shown;
+}
+
+export function draw_map(g: Context, view: View, palette: Palette): void {
+  const known = map_picture(palette);
+  if (!known) return;
+  const { min_x, max_y, max_x, min_y } = known.bounds;
   g.save();
-  g.imageSmoothingEnabled = view.scale * shown.map.cell < 1; // else each cell is a square
-  g.globalAlpha = 0.7;
-  g.drawImage(shown.picture, view.sx(min_x), view.sy(max_y), (max_x - min_x) * view.scale, (max_y - min_y) * view.scale);
+  g.imageSmoothingEnabled = view.scale * known.map.cell < 1; // else each cell is a square
+  g.globalAlpha = kOpacity;
+  g.drawImage(known.picture, view.sx(min_x), view.sy(max_y), (max_x - min_x) * view.scale, (max_y - min_y) * view.scale);
   g.restore();
 }
 

@@ -22,6 +22,7 @@ import { build_arm, build_hand_goal, build_plan } from "./arm";
 import { build_sectors, build_wall_words, build_ways_ahead } from "./driven";
 import { beside_holes, ground } from "./ground";
 import { Gizmo, HeldGoal } from "./gizmo";
+import { build_map } from "./known_map";
 import { build_layer } from "./layers";
 import {
   body, clear, goal, goals_ahead, grid, outline_at, points, pressed, ranging, ribbon, ring, solid, sun, vertices,
@@ -221,12 +222,15 @@ export class World3 {
   private build_statics(scene: SceneState, selection: Selection, hidden: ReadonlySet<string>): void {
     const mesh = !hidden.has(kOwn.mesh.name);
     const hills = !hidden.has(kOwn.ground.name);
-    const key = [mesh, hills, scene.obstacles, scene.goal?.x, scene.goal?.y, scene.goal?.heading,
+    const known = hidden.has(kOwn.map.name) ? null : scene.map;
+    const key = [mesh, hills, known, scene.obstacles, scene.goal?.x, scene.goal?.y, scene.goal?.heading,
       selection?.kind, selection?.kind === "obstacle" ? selection.id : null];
     if (!changed(this.built_, key)) return;
     clear(this.statics_);
     const p = this.palette_;
     if (mesh) this.statics_.add(grid(p, beside_holes));
+    const map = known && build_map(p);
+    if (map) this.statics_.add(map);
     for (const o of present(scene.obstacles)) {
       const chosen = selection?.kind === "obstacle" && selection.id === o.id;
       if (!is_ground(o)) this.statics_.add(solid(o, p, chosen));
