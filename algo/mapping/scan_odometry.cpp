@@ -1,24 +1,24 @@
 // algo/mapping/scan_odometry.cpp: match, then enter.
 #include "algo/mapping/scan_odometry.hpp"
 
-#include <cmath>
-
 namespace algo {
 namespace {
 
 constexpr double kThinned = 0.08;          // [m] between two points that are matched
 constexpr std::size_t kUsualBeams = 1024;  // reserved from the start
+constexpr double kAtStart = 0.01;          // [m] deviation of the place where the map begins
+constexpr double kTurnAtStart = 0.01;      // [rad]
 
 }  // namespace
 
 ScanOdometry::ScanOdometry(const MapperSettings& settings)
-    : settings_(settings), map_(settings.cell) {
+    : settings_(settings), map_(settings.cell), place_({}, kAtStart, kTurnAtStart) {
   thinned_R_.reserve(kUsualBeams);
 }
 
 void ScanOdometry::reset(const Pose2& start_W, const Pose2& odometry) {
   map_ = OccupancyMap(settings_.cell);
-  pose_W_ = start_W;
+  place_ = PlaceFilter(start_W, kAtStart, kTurnAtStart);
   odometry_ = odometry;
   entered_W_.reset();
 }
@@ -26,19 +26,16 @@ void ScanOdometry::reset(const Pose2& start_W, const Pose2& odometry) {
 void ScanOdometry::take(std::span<const Vec2> points_R,
                         const Vec2& scanner_R,
                         const Pose2& odometry) {
-  const Pose2 step = pose_step(odometry_, odometry);
-  const double way = step.position().norm() + std::abs(step.heading);
-  if (entered_W_ && way < kMatchEvery) return;
-  pose_W_ = compose(pose_W_, step);
+  place_.follow(pose_step(odometry_, odometry));
   odometry_ = odometry;
+  if (entered_W_ && !place_.due()) return;
   if (entered_W_) {
     thin(points_R);
     matcher_.take(thinned_R_);
-    const ScanMatch match = matcher_.match(map_, pose_W_, settings_.prior);
-    // A scan that hardly meets the map shows new walls: there the wheels know better.
-    if (match.share >= settings_.lost) pose_W_ = match.pose_W;
+    const ScanMatch match = matcher_.match(map_, place_.pose_M(), settings_.prior);
+    place_.take(match, match.share);
   }
-  if (!entered_W_ || apart(*entered_W_, pose_W_, settings_)) enter(points_R, scanner_R);
+  if (!entered_W_ || apart(*entered_W_, place_.pose_M(), settings_)) enter(points_R, scanner_R);
 }
 
 /// Keeps points a little apart, so that near walls do not outweigh far ones.
@@ -52,11 +49,12 @@ void ScanOdometry::thin(std::span<const Vec2> points_R) {
 }
 
 void ScanOdometry::enter(std::span<const Vec2> points_R, const Vec2& scanner_R) {
-  const Vec2 from_W = to_parent(pose_W_, scanner_R);
+  const Pose2& pose_W = place_.pose_M();
+  const Vec2 from_W = to_parent(pose_W, scanner_R);
   for (const Vec2& p_R : points_R) {
-    if (p_R.norm() <= settings_.reach) map_.insert(from_W, to_parent(pose_W_, p_R));
+    if (p_R.norm() <= settings_.reach) map_.insert(from_W, to_parent(pose_W, p_R));
   }
-  entered_W_ = pose_W_;
+  entered_W_ = pose_W;
 }
 
 }  // namespace algo

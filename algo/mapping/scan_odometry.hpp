@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "algo/mapping/map_localizer.hpp"
 #include "algo/mapping/mapper_settings.hpp"
 #include "algo/mapping/occupancy_map.hpp"
 #include "algo/mapping/scan_matcher.hpp"
@@ -15,9 +16,10 @@
 namespace algo {
 
 /// Matches the robot's scans to one map that it never forgets, so that a place that it comes back
-/// to lies where it lay. The pose changes by a few centimetres at a match, and never jumps: unlike
-/// GraphMapper it closes no loops, and the drift of one way round a loop must stay below the reach
-/// of the matcher, 0.5 m.
+/// to lies where it lay. A filter weighs each match against the wheels and learns their scale: over
+/// a few metres the pose must be as smooth as theirs, since a doorway beside the robot, out of its
+/// scanner's sight, is remembered in that frame. Unlike GraphMapper it closes no loops, and the
+/// drift of one way round a loop must stay below the reach of the matcher, 0.5 m.
 ///
 /// Memory grows with the area seen and not with the way driven. The same input gives the same poses
 /// bit for bit.
@@ -30,16 +32,14 @@ class ScanOdometry {
   void reset(const Pose2& start_W, const Pose2& odometry);
 
   /// Takes a scan of a robot at the odometry pose `odometry`: the returns `points_R` of a scanner
-  /// at `scanner_R`. Only scans kMatchEvery apart are matched.
+  /// at `scanner_R`. Only scans 0.1 m apart are matched, or 0.1 rad.
   void take(std::span<const Vec2> points_R, const Vec2& scanner_R, const Pose2& odometry);
 
   /// The pose of a robot at the odometry pose `odometry`.
   Pose2 pose_W(const Pose2& odometry) const {
-    return compose(pose_W_, pose_step(odometry_, odometry));
+    return compose(place_.pose_M(), scaled(pose_step(odometry_, odometry), place_.scale()));
   }
   const OccupancyMap& map() const { return map_; }
-
-  static constexpr double kMatchEvery = 0.1;  // [m] of way, a radian counting as a metre
 
  private:
   void thin(std::span<const Vec2> points_R);
@@ -49,8 +49,8 @@ class ScanOdometry {
   OccupancyMap map_;
   ScanMatcher matcher_{};
   std::vector<Vec2> thinned_R_{};
-  Pose2 pose_W_{};                    // at the last match
-  Pose2 odometry_{};                  // then
+  PlaceFilter place_;
+  Pose2 odometry_{};                  // at the newest scan
   std::optional<Pose2> entered_W_{};  // the pose of the last scan in the map
 };
 

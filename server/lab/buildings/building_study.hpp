@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "algo/metrics.hpp"
 #include "server/experiment/table.hpp"
 #include "server/experiment/trial.hpp"
 #include "server/lab/buildings/building_world.hpp"

@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "algo/metrics.hpp"
 #include "algo/types.hpp"
 #include "server/experiment/pool.hpp"
 #include "server/lab/mapping/corridor_walls.hpp"
