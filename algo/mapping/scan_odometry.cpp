@@ -6,8 +6,11 @@ namespace {
 
 constexpr double kThinned = 0.08;          // [m] between two points that are matched
 constexpr std::size_t kUsualBeams = 1024;  // reserved from the start
-constexpr double kAtStart = 0.01;          // [m] deviation of the place where the map begins
-constexpr double kTurnAtStart = 0.01;      // [rad]
+// What the map is off by near the robot: it was drawn by the same wheels not long ago.
+constexpr double kOwnMapError = 0.03;       // [m]
+constexpr double kOwnMapTurnError = 0.006;  // [rad]
+constexpr double kAtStart = 0.01;           // [m] deviation of the place where the map begins
+constexpr double kTurnAtStart = 0.01;       // [rad]
 
 }  // namespace
 
@@ -33,7 +36,7 @@ void ScanOdometry::take(std::span<const Vec2> points_R,
     thin(points_R);
     matcher_.take(thinned_R_);
     const ScanMatch match = matcher_.match(map_, place_.pose_M(), settings_.prior);
-    place_.take(match, match.share);
+    place_.take(match, match.share, {kOwnMapError, kOwnMapError, kOwnMapTurnError});
   }
   if (!entered_W_ || apart(*entered_W_, place_.pose_M(), settings_)) enter(points_R, scanner_R);
 }
