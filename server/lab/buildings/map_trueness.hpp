@@ -40,6 +40,6 @@ class MapPieces {
 double doubled_share(const std::vector<algo::Vec2>& walls_W,
                      const MapPieces& pieces,
                      const GridOracle& truth);
-inline constexpr double kApart = 0.15;  // [m]
+inline constexpr double kApart = 0.10;  // [m]
 
 }  // namespace server::buildings

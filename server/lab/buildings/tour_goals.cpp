@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 #include <variant>
@@ -132,13 +133,17 @@ Vec2 TourGoals::anywhere() {
   return best_W;
 }
 
+/// The first place tried within kNearGoal; the nearest one if there is none. Not where the robot
+/// stands.
 Vec2 TourGoals::near(const Vec2& robot_W) {
   Vec2 best_W = anywhere();
-  const auto away = [&](const Vec2& p_W) { return (p_W - robot_W).norm(); };
-  for (std::size_t k = 0; k < kGoalTries; ++k) {
-    if (away(best_W) < kNearGoal && away(best_W) > kNearest) break;
+  const auto away = [&](const Vec2& p_W) {
+    const double way = (p_W - robot_W).norm();
+    return way > kNearest ? way : std::numeric_limits<double>::infinity();
+  };
+  for (std::size_t k = 0; k < kGoalTries && !(away(best_W) < kNearGoal); ++k) {
     const Vec2 p_W = anywhere();
-    if (away(p_W) > kNearest && away(p_W) < away(best_W)) best_W = p_W;
+    if (away(p_W) < away(best_W)) best_W = p_W;
   }
   return best_W;
 }
