@@ -33,6 +33,9 @@ class FullStripController final : public Controller {
   void update(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
   void explain(const Telemetry& t, Explanation& words) const override;
 
+  /// Map and memory, for studies.
+  const StripSenses& senses() const { return senses_; }
+
   using State = strip_state::State;
   using enum strip_state::State;
 

@@ -30,8 +30,7 @@ constexpr double kRidge = 0.75;               // share of the fit that holds bet
 
 constexpr double kMatchEvery = 0.1;  // [m] of way, a radian counting as a metre
 constexpr MatchPrior kPlacePrior{.position = 1, .heading = 2};
-constexpr double kLeastMatch = 0.35;  // share of the points
-// What a map is bent by, and what has moved since, errs alike in many matches in a row.
+constexpr double kLeastMatch = 0.35;    // share of the points
 constexpr double kMapError = 0.05;      // [m]
 constexpr double kMapTurnError = 0.01;  // [rad]
 constexpr double kSurprising = 9;       // squared deviations of a match
@@ -99,15 +98,18 @@ bool PlaceFilter::due() const {
   return !matched_ || way_ >= kMatchEvery;
 }
 
-void PlaceFilter::take(const ScanMatch& match, double fit) {
+Vec3 PlaceFilter::known_map_errors() {
+  return {kMapError, kMapError, kMapTurnError};
+}
+
+void PlaceFilter::take(const ScanMatch& match, double fit, const Vec3& map_errors) {
   const double share = matched_ ? std::min(1.0, way_ / kFitMemory) : 1;
   fit_ += share * (fit - fit_);
   merit_ += way_ * fit;
   way_ = 0;
   matched_ = true;
   if (match.share < kLeastMatch) return;
-  const Eigen::Matrix3d information =
-      weakened(match_information(match), {kMapError, kMapError, kMapTurnError});
+  const Eigen::Matrix3d information = weakened(match_information(match), map_errors);
   const Vec3 off(match.pose_W.x - pose_M_.x,
                  match.pose_W.y - pose_M_.y,
                  wrap_angle(match.pose_W.heading - pose_M_.heading));

@@ -28,7 +28,11 @@ class PlaceFilter {
   /// Follows a step of the odometry.
   void follow(const Pose2& step);
   /// Takes a match found from pose_M() on, of which the share `fit` of the points lies on walls.
-  void take(const ScanMatch& match, double fit);
+  /// `map_errors`: the deviations [m], [m], [rad] of the map, which err alike in many matches in a
+  /// row.
+  void take(const ScanMatch& match, double fit, const Vec3& map_errors = known_map_errors());
+  /// Of a map that somebody gave: it is bent, and things have moved since.
+  static Vec3 known_map_errors();
 
   const Pose2& pose_M() const { return pose_M_; }
   /// Of x, y [m] and heading [rad] in M.

@@ -43,6 +43,11 @@ class OccupancyMap {
 
   /// Enters the Ok beams of `scan` up to `reach` [m], taken by a scanner at `sensor_W`.
   void insert(const LaserScan& scan, const Pose2& sensor_W, double reach);
+  /// Enters a beam from `from_W` that ended at `to_W`.
+  void insert(const Vec2& from_W, const Vec2& to_W) {
+    pass(from_W, to_W);
+    hit(to_W);
+  }
 
   /// Makes the cell of `p_W` a wall, or free, as a map read from a file says.
   void mark_wall(const Vec2& p_W) { hit(p_W); }

@@ -10,6 +10,7 @@
 #include "server/cli/cli.hpp"
 #include "server/cli/pool_options.hpp"
 #include "server/lab/buildings/building_study.hpp"
+#include "server/lab/buildings/tour_study.hpp"
 #include "server/run/scenario_json.hpp"
 #include "server/run/text_file.hpp"
 
@@ -23,6 +24,8 @@ struct BuildingsCommand {
   bool list = false;
   std::string rows{};
   std::string scenario{};
+  std::size_t tour = 0;  // goals; 0: one goal in each building
+  std::vector<std::string> odometries{};
   buildings::Options options{};
 };
 
@@ -50,6 +53,30 @@ void read_seeds(std::string_view text, buildings::Options& options) {
   }
 }
 
+int execute_tours(const BuildingsCommand& command) {
+  buildings::TourStudyOptions options{.buildings = command.options, .goals = command.tour};
+  if (!command.odometries.empty()) options.odometries.clear();
+  for (const std::string& odometry : command.odometries) {
+    options.odometries.push_back(buildings::odometry_named(odometry));
+  }
+  std::vector<buildings::Tour> tours;
+  {
+    ProgressLine progress;
+    options.buildings.pool.progress = [&](std::size_t done, std::size_t all) {
+      progress.show(fmt::format("{} of {} tours", done, all));
+    };
+    tours = run_tours(options);
+  }
+  if (!command.rows.empty()) write_table(legs_table(tours), command.rows);
+  if (command.as_json) {
+    fmt::print("{}\n", tours_json(tours).dump(2));
+    return kReached;
+  }
+  if (command.list) fmt::print("{}\n", to_text(tour_faults_table(tours)));
+  fmt::print("{}", to_markdown(tours_table(tours)));
+  return kReached;
+}
+
 int execute(BuildingsCommand command) {
   read_seeds(command.seeds, command.options);
   for (const std::string& kind : command.kinds) {
@@ -61,6 +88,7 @@ int execute(BuildingsCommand command) {
     write_text(command.scenario, to_json(building.scenario).dump(1) + "\n");
     return kReached;
   }
+  if (command.tour > 0) return execute_tours(command);
   std::vector<buildings::BuildingRun> runs;
   {
     ProgressLine progress;
@@ -104,6 +132,21 @@ void add_buildings_command(Command app, int& status) {
                   command->scenario,
                   "Run nothing: write the first building to this file as a scenario for the page")
       .type_name("FILE");
+  const Option tour =
+      buildings
+          .add_option(
+              "--tour",
+              command->tour,
+              "In each building this many goals, one after another without a restart (200 are a "
+              "long tour)")
+          .type_name("GOALS")
+          .range(std::size_t{1}, std::size_t{10'000});
+  buildings
+      .add_option("--odometry",
+                  command->odometries,
+                  "What the robot knows its place by in a tour: true, wheels (2 % off), matched "
+                  "(the same wheels, corrected by matched scans); default: all three")
+      .needs(tour);
   buildings.add_flag("--json", command->as_json, "Print JSON");
   buildings.callback([command, &status] { status = execute(*command); });
 }

@@ -18,7 +18,6 @@ namespace {
 
 using algo::Outcome;
 
-constexpr double kStandsLong = 60;     // [s] longer than a door stays shut
 constexpr double kLeastLimit = 120;    // [s] of a run with a way to its goal,
 constexpr double kMostRatio = 6;       // or so many times the oracle's time
 constexpr double kWithoutLimit = 900;  // [s] of a run without a way
@@ -26,17 +25,6 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 constexpr std::array<std::string_view, 6> kEndNames{
     "reached", "refused", "blocked", "silent", "collided", "out_of_time"};
-
-std::vector<std::uint64_t> seeds_of(const Options& options) {
-  std::vector<std::uint64_t> seeds;
-  for (std::uint64_t seed = options.first_seed; seed <= options.last_seed; ++seed) {
-    const Kind kind = kKinds.at(seed % kKinds.size());
-    const bool wanted =
-        options.kinds.empty() || std::ranges::find(options.kinds, kind) != options.kinds.end();
-    if (wanted) seeds.push_back(seed);
-  }
-  return seeds;
-}
 
 double quantile_of(std::vector<double> values, double p) {
   if (values.empty()) return kNone;
@@ -92,19 +80,29 @@ std::string number(double value) {
 
 }  // namespace
 
+std::vector<std::uint64_t> seeds_of(const Options& options) {
+  std::vector<std::uint64_t> seeds;
+  for (std::uint64_t seed = options.first_seed; seed <= options.last_seed; ++seed) {
+    const Kind kind = kKinds.at(seed % kKinds.size());
+    const bool wanted =
+        options.kinds.empty() || std::ranges::find(options.kinds, kind) != options.kinds.end();
+    if (wanted) seeds.push_back(seed);
+  }
+  return seeds;
+}
+
 std::string_view name(End end) {
   return kEndNames.at(static_cast<std::size_t>(end));
 }
 
-End BuildingRun::end() const {
-  switch (row.outcome) {
+End end_of(Outcome outcome, bool silent, int state) {
+  switch (outcome) {
     case Outcome::Reached:
       return End::Reached;
     case Outcome::Collided:
       return End::Collided;
     case Outcome::Stuck: {
-      if (row["silent"] > 0) return End::Silent;
-      const auto state = static_cast<int>(row["end_state"]);
+      if (silent) return End::Silent;
       const bool refused = state == algo::FullStripController::kNoWay ||
                            state == algo::FullStripController::kGoalTaken;
       return refused ? End::Refused : End::Blocked;
@@ -114,13 +112,23 @@ End BuildingRun::end() const {
   }
 }
 
+End BuildingRun::end() const {
+  const bool stuck = row.outcome == Outcome::Stuck;
+  return end_of(
+      row.outcome, stuck && row["silent"] > 0, stuck ? static_cast<int>(row["end_state"]) : 0);
+}
+
+double limit_of(const Truth& truth) {
+  return truth.time ? std::max(kLeastLimit, kMostRatio * *truth.time) : kWithoutLimit;
+}
+
 experiment::Trial trial_of(std::uint64_t seed, const Building& building, const Truth& truth) {
-  const double limit = truth.time ? std::max(kLeastLimit, kMostRatio * *truth.time) : kWithoutLimit;
   experiment::Trial trial{
       .name = building.scenario.name,
       .spec = make_spec(building.scenario, {}),
       .judges = {{.name = "metrics"},
-                 {.name = "silence", .settings = {{"stands_s", kStandsLong}, {"limit_s", limit}}},
+                 {.name = "silence",
+                  .settings = {{"stands_s", kStandsLong}, {"limit_s", limit_of(truth)}}},
                  {.name = "place"}},
       .until = "silence",
       .time_ticks = true};

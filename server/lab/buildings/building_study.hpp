@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "algo/metrics.hpp"
 #include "server/experiment/table.hpp"
 #include "server/experiment/trial.hpp"
 #include "server/lab/buildings/building_world.hpp"
@@ -22,6 +23,9 @@ struct Options {
   experiment::PoolOptions pool{};
 };
 
+/// The seeds of the wanted kinds.
+std::vector<std::uint64_t> seeds_of(const Options& options);
+
 /// How a run ended.
 enum class End : std::uint8_t {
   Reached,
@@ -33,6 +37,12 @@ enum class End : std::uint8_t {
 };
 /// "out_of_time"
 std::string_view name(End end);
+/// `silent`: it stood without a reason. `state`: of the strip at the end, as its words explain it.
+End end_of(algo::Outcome outcome, bool silent, int state);
+
+inline constexpr double kStandsLong = 60;  // [s] longer than a door stays shut
+/// [s] after which a run is over.
+double limit_of(const Truth& truth);
 
 struct BuildingRun {
   std::uint64_t seed = 0;

@@ -233,6 +233,11 @@ class Builder {
   FloorPlan plan_;
 };
 
+/// [m] A way is nowhere narrower.
+double gap_of(double door_width) {
+  return std::min(kGap, door_width - kUnderDoor);
+}
+
 /// [s] until a robot at top speed has driven `way_W` through the door, waiting while that is shut.
 double time_through(const std::vector<Vec2>& way_W, const TimedDoor& door) {
   double way = 0;
@@ -271,19 +276,28 @@ Building building_of(std::uint64_t seed, const std::string& controller) {
   return building;
 }
 
+Truth truth_between(GridOracle& oracle,
+                    double door_width,
+                    const Vec2& from_W,
+                    const Vec2& to_W,
+                    std::optional<std::vector<Vec2>>* found) {
+  auto way = oracle.way(from_W, to_W, gap_of(door_width) / 2, kGoalReach);
+  Truth truth;
+  truth.has_way = way.has_value();
+  truth.has_none = !oracle.way(from_W, to_W, kNoGap / 2, kGoalReach);
+  if (way) truth.time = length_of(*way) / kTopSpeed;
+  if (found != nullptr) *found = std::move(way);
+  return truth;
+}
+
 Truth truth_of(const Building& building) {
   const sim::Scenario& scenario = building.scenario;
   const Vec2 start_W = scenario.start.position();
   const Vec2 goal_W = scenario.goal->position_W;
-  const double gap = std::min(kGap, building.door_width - kUnderDoor);
   GridOracle oracle(scenario.obstacles);
-  Truth truth;
-  const auto way = oracle.way(start_W, goal_W, gap / 2, kGoalReach);
-  truth.has_way = way.has_value();
-  truth.has_none = !oracle.way(start_W, goal_W, kNoGap / 2, kGoalReach);
-  if (!way) return truth;
-  truth.time = length_of(*way) / kTopSpeed;
-  if (!building.timed_door) return truth;
+  std::optional<std::vector<Vec2>> way;
+  Truth truth = truth_between(oracle, building.door_width, start_W, goal_W, &way);
+  if (!way || !building.timed_door) return truth;
   truth.time = time_through(*way, *building.timed_door);
   std::vector<algo::Obstacle> shut = scenario.obstacles;
   for (algo::Obstacle& obstacle : shut) {
@@ -291,7 +305,8 @@ Truth truth_of(const Building& building) {
     obstacle.pose_W = building.timed_door->shut_W;
     obstacle.path.reset();
   }
-  const auto round = GridOracle(shut).way(start_W, goal_W, gap / 2, kGoalReach);
+  const auto round =
+      GridOracle(shut).way(start_W, goal_W, gap_of(building.door_width) / 2, kGoalReach);
   if (round) truth.time = std::min(*truth.time, length_of(*round) / kTopSpeed);
   return truth;
 }

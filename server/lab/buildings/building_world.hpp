@@ -7,8 +7,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "server/lab/buildings/building_kinds.hpp"
+#include "server/lab/buildings/grid_oracle.hpp"
 #include "sim/scenario.hpp"
 
 namespace server::buildings {
@@ -55,5 +57,12 @@ struct Truth {
   bool has_none = false;
 };
 Truth truth_of(const Building& building);
+/// The same between any two places, without a door that moves. `found` gets the way, if it is not
+/// null.
+Truth truth_between(GridOracle& oracle,
+                    double door_width,
+                    const algo::Vec2& from_W,
+                    const algo::Vec2& to_W,
+                    std::optional<std::vector<algo::Vec2>>* found = nullptr);
 
 }  // namespace server::buildings
