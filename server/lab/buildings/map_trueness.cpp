@@ -69,7 +69,7 @@ std::vector<Vec2> remembered_walls(const algo::StripSenses& senses) {
   constexpr double kWindow = LocalMap::kSize * LocalMap::kCell;
   constexpr int kSide = BuildingMemory::kFineSide;
   const LocalMap& map = senses.map();
-  const Vec2 corner_W = map.corner_W();
+  const Vec2& corner_W = map.corner_W();
   std::vector<Vec2> walls_W;
   map.each_near(corner_W + Vec2(kWindow, kWindow) / 2, kWindow / 2, [&](const Vec2& p_W) {
     walls_W.push_back(p_W);
