@@ -162,8 +162,7 @@ test("the page reconnects by itself after the server was down", { timeout: 90_00
   // The interrupted run is marked.
   const runs = await json(server.base, "/runs");
   assert.ok(runs.items.some((r) => r.status === "interrupted"), JSON.stringify(runs.items.map((r) => r.status)));
-  p.forgive(/WebSocket connection|ERR_CONNECTION|Failed to load resource|Failed to fetch/);
-  await p.close();
+  await p.close(/WebSocket connection|ERR_CONNECTION|Failed to load resource|Failed to fetch/);
   await server.stop();
   place.remove();
 });
@@ -322,8 +321,7 @@ test("3D draws the same world; without WebGL it shows a message", { timeout: 90_
     assert.match(await q.get("no-webgl").textContent(), /WebGL/);
     await q.page.getByRole("button", { name: "Show it from above" }).click();
     await q.page.waitForSelector('[data-testid="scene"]');
-    q.forgive(/WebGL|3d/i);
-    await q.close();
+    await q.close(/WebGL|3d/i);
     await plain.close();
   }));
 

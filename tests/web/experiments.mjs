@@ -82,8 +82,7 @@ test("from a template to the table, with Check before Start", { timeout: 120_000
     const text = await (await fetch(new URL(href, server.base))).text();
     assert.ok(text.startsWith(begins), `${file}: ${text.slice(0, 40)}`);
   }
-  p.forgive(/422/); // two documents were wrong on purpose
-  await p.close();
+  await p.close(/422/); // two documents were wrong on purpose
 });
 
 test("runs are filtered and sorted, and one is made again and opens", { timeout: 120_000 }, async () => {

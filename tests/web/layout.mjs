@@ -216,8 +216,7 @@ test("nothing loaded yet, and disconnected", { timeout: 180_000 }, async () => {
     await p.page.waitForTimeout(600);
     assert.deepEqual(await faults_of(p, server.base, await places(p, last)), [], `${size}, disconnected`);
     await shot(p, size, "disconnected");
-    p.forgive(/WebSocket connection|ERR_CONNECTION|Failed to load resource|Failed to fetch/);
-    await p.close();
+    await p.close(/WebSocket connection|ERR_CONNECTION|Failed to load resource|Failed to fetch/);
     place.remove();
   }
 });

@@ -54,8 +54,10 @@ export async function open(browser, base, { size = desktop, theme = usual_theme,
   const get = (id) => page.getByTestId(id);
   return {
     page, context, faults, get,
-    async close() {
+    /** Ends the page. `on_purpose`: faults that the test brought about; others of their kind may come up to the end. */
+    async close(on_purpose) {
       assert.deepEqual(await page.evaluate(() => window.violations), [], "content security policy");
+      if (on_purpose) this.forgive(on_purpose);
       assert.deepEqual(faults, [], "console");
       await context.close();
     },

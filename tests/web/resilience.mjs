@@ -182,8 +182,7 @@ test(`${kRestarts} restarts of the server and ${kFailures} failures of the netwo
       assert.ok(now.listeners <= first.listeners + 20, `listeners: ${first.listeners}, then ${now.listeners}`);
       assert.ok(now.nodes <= first.nodes + 400, `nodes: ${first.nodes}, then ${now.nodes}`);
     }
-    p.forgive(/ERR_|WebSocket|Failed to load/); // brought about on purpose
-    await p.close();
+    await p.close(/ERR_|WebSocket|Failed to load/); // brought about on purpose
   } finally {
     await browser.close();
     net.end();

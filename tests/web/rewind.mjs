@@ -302,7 +302,6 @@ test("a link holds run, time, comparison and view; tool, layers, camera and 3D s
     await looks("the eye is where it was", turned);
     await q.get("fit").click();
     await looks("Fit shows the whole world", fitted);
-    q.forgive(/WebGL/);
-    await q.close();
+    await q.close(/WebGL/);
     await p.close();
   }));

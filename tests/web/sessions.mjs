@@ -61,8 +61,7 @@ test("two visitors have a world each, and an ended session is reported", { timeo
     assert.equal(await p.get("session-gone").count(), 0);
     assert.equal((await session(p)()).stop, false);
     assert.equal((await session(q)()).stop, false);
-    p.forgive(/404/); // requests of the page while its session ended
-    await p.close();
+    await p.close(/404/); // requests of the page while its session ended
     await q.close();
   }));
 
