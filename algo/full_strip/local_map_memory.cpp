@@ -12,7 +12,6 @@ namespace {
 constexpr int kMapTiles = LocalMap::kSize / BuildingMemory::kFineSide;  // along the window's edge
 constexpr int kFinePerCoarse = BuildingMemory::kFineSide / BuildingMemory::kCoarseSide;
 constexpr double kCm = 0.01;           // [m]
-constexpr double kCellDoubt = 3;       // [cm] by which the distance between cells may be too low
 constexpr std::uint8_t kRestored = 6;  // hits of a cell that enters again
 
 /// Calls `visit(column, row)` for each tile of a window of kMapTiles that lies outside the window

@@ -6,6 +6,21 @@
 #include <cmath>
 
 namespace algo {
+namespace {
+
+/// True if the distance `d` [m] at the corner grows towards one side and falls towards the other:
+/// there is a thing on one side alone. In a gap it falls or grows towards both.
+bool rises(const LocalMap& map, int column, int row, double d) {
+  constexpr double kSlope = 0.03;  // [m] between neighbours
+  constexpr std::array<std::array<int, 2>, 4> kWays{{{2, 0}, {0, 2}, {2, 2}, {2, -2}}};
+  return std::ranges::any_of(kWays, [&](const std::array<int, 2>& way) {
+    const double before = corner_distance(map, column - way[0], row - way[1]) - d;
+    const double after = corner_distance(map, column + way[0], row + way[1]) - d;
+    return std::min(before, after) < -kSlope && std::max(before, after) > kSlope;
+  });
+}
+
+}  // namespace
 
 Roomiest roomiest(const LocalMap& map, const Vec2& p_W, double reach, double most) {
   constexpr double kStep = 0.02;   // [m]
@@ -40,22 +55,6 @@ double corner_distance(const LocalMap& map, int column, int row) {
                   map.cell_distance(column, row + 1) + map.cell_distance(column + 1, row + 1);
   return sum * kQuarterMm;
 }
-
-namespace {
-
-/// True if the distance `d` [m] at the corner grows towards one side and falls towards the other:
-/// there is a thing on one side alone. In a gap it falls or grows towards both.
-bool rises(const LocalMap& map, int column, int row, double d) {
-  constexpr double kSlope = 0.03;  // [m] between neighbours
-  constexpr std::array<std::array<int, 2>, 4> kWays{{{2, 0}, {0, 2}, {2, 2}, {2, -2}}};
-  return std::ranges::any_of(kWays, [&](const std::array<int, 2>& way) {
-    const double before = corner_distance(map, column - way[0], row - way[1]) - d;
-    const double after = corner_distance(map, column + way[0], row + way[1]) - d;
-    return std::min(before, after) < -kSlope && std::max(before, after) > kSlope;
-  });
-}
-
-}  // namespace
 
 double room_at(const LocalMap& map, int column, int row, double least, bool exact) {
   const double d = corner_distance(map, column, row);
