@@ -60,24 +60,38 @@ verb_fmt() {
 # ---- sanitizers and fuzzing -----------------------------------------------------------------------
 
 # Long drives and heavy loads, whose code shorter tests run as well. A sanitizer would make minutes of each.
-long_tests=(AppTest.ABatchOfTenThousand\* ArmRun.APersonWho\* ArmInverse.EveryBranch\* ArmStudy.\* BodyFollower.Passes\* BuildingStudy.RunsTheChosen\*
-  BodyStrip.TheArmYields\* Compare.TheBlindOne\* Determinism.SeveralRobots\*
-  CrowdCrossing.{TheSame,SomebodyWho}\* FleetRobot.{EachRobot,SoItDoes}\* GroundCourses.ARobotClimbs\* GroundDrive.RefusesSteps\* MapData.\*
-  LocateStudy.\* MasudaStudy.{BandsCanFail,DocumentsName,DownwardSlopes,HasTheLines,PrintedRules}\*
-  FilterStudy.RepeatsExactly\* Operator.IsTheSame\* Physics/RecordedSwap.\* RunListLoadTest.\* RunQueueTest.WaitingWorlds\*
-  SlopeStudy.TheGuardKeeps\* TightPlaces.\* Turnover.BeginsWhere\*)
+long_tests=(AppTest.ABatchOfTenThousand\* ArmInverse.EveryBranch\* ArmRun.APersonWho\* ArmRun.TheHandFollows\*
+  ArmStudy.\* BodyFollower.Passes\* BodyStrip.TheArmYields\* Buildings.HaveEveryKind\* BuildingStudy.RunsTheChosen\*
+  Compare.TheBlindOne\* CrowdCrossing.{TheSame,SomebodyWho}\* Determinism.SeveralRobots\*
+  FilterStudy.RepeatsExactly\* FleetRobot.{EachRobot,SoItDoes}\* GroundCourses.ARobotClimbs\*
+  GroundCourses.TenDegreesLeft\* GroundDrive.RefusesSteps\* LocateStudy.\* MapData.\*
+  MasudaStudy.{BandsCanFail,DocumentsName,DownwardSlopes,HasTheLines,PrintedRules}\* Operator.IsTheSame\*
+  PeopleRun.TheRobotCrosses\* Physics/RecordedSwap.\* ReachStudy.CountsEach\* RunListLoadTest.\*
+  RunQueueTest.WaitingWorlds\* SlopeStudy.TheGuardKeeps\* TightPlaces.\* Tour.AShortOne\* Turnover.BeginsWhere\*)
 
-# Tests run in shards here, many in a process. ThreadSanitizer runs only the tests of rooms that start threads;
-# the others would only take time.
-verb_sanitize() {
-  local targets
-  case "${1:-}" in
+# build_sanitized NAME: sets `targets`, the tests that run under the sanitizer NAME, and builds them. ThreadSanitizer
+# has only the rooms that start threads; the others would only take time.
+build_sanitized() {
+  case "$1" in
     asan) targets=(test_{algo,sim,drivers,db} test_server_{run,record,experiment,lab,external,serve,emulate,cli} fuzz) ;;
     tsan) targets=(test_db test_server_{run,record,experiment,external,serve,emulate}) ;;
-    *) fail "sanitize asan or sanitize tsan" ;;
+    *) fail "there is no sanitizer '$1': asan or tsan" ;;
   esac
   need clang-16 libclang-rt-16-dev
   build_all "$1" "${targets[@]}"
+}
+
+verb_build() {
+  local name targets
+  for name in "${@:-release}"; do
+    if [[ $name == release ]]; then build_all release; else build_sanitized "$name"; fi
+  done
+}
+
+# Tests run in shards here, many in a process.
+verb_sanitize() {
+  local targets
+  build_sanitized "${1:-}"
   export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_stack_use_after_return=1}
   export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
   export TSAN_OPTIONS=${TSAN_OPTIONS:-halt_on_error=1:second_deadlock_stack=1:suppressions=$root/tests/dev/tsan.supp}

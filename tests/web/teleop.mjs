@@ -38,13 +38,21 @@ async function knob(p, forward, turn) {
   return { x: box.x + box.width / 2 - turn * unit, y: box.y + box.height / 2 - forward * unit };
 }
 
-/** Holds a key until the robot moves; presses it again, as a person would, when the page was too busy to take it. */
+/**
+ * Holds a key until the robot moves; presses it again, as a person would, when the page was too busy to take it.
+ * When it never moves, the error holds the page's own words on the reason.
+ */
 async function hold_key(p, key) {
-  await until("on its way", 30, async () => {
+  const words = async () => ({
+    moves: false,
+    reason: await p.get("teleop-reason").textContent(),
+    driver: await p.get("who-drives").textContent(),
+  });
+  await until("on its way", 45, async () => {
     await p.page.keyboard.up(key);
     await p.page.keyboard.down(key);
-    return until("moving", 3, session, moves).catch(() => false);
-  });
+    return until("moving", 3, session, moves).then(() => ({ moves: true }), words);
+  }, (now) => now.moves);
 }
 
 test("by mouse: it drives while the stick is held, and stops when it is let go", { timeout: 120_000 }, async () => {
