@@ -136,13 +136,16 @@ test("the paths of all controllers lie over their world, and a press replays one
 
 test("pause, go on, cancel and delete; what another page does is shown", { timeout: 120_000 }, async () => {
   const { id } = await post(short("long", 4000));
+  await act(id, "pause"); // a page that loads slowly would come after its end
   const p = await open(browser, server.base, { size: phone, touch: true, hash: `#/experiments/${id}` });
-  await p.get("experiment-pause").click();
-  await until("paused", 10, () => info(id), (e) => e.state === "paused");
   await p.page.getByText("INCOMPLETE").waitFor();
   await p.get("experiment-resume").click();
   await until("running", 10, () => info(id), (e) => e.state === "running");
-  await act(id, "pause"); // somebody else
+  await p.get("experiment-pause").click();
+  await until("paused", 10, () => info(id), (e) => e.state === "paused");
+  await act(id, "resume"); // somebody else
+  await p.get("experiment-pause").waitFor();
+  await act(id, "pause");
   await p.get("experiment-resume").waitFor();
   assert.deepEqual(await p.accessibility(), []);
   await p.shot("experiments-phone");
