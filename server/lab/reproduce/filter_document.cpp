@@ -159,8 +159,8 @@ std::string phantom(const SceneResult& first) {
 }
 
 constexpr std::string_view kAboutTable2 =
-    "Our notes have none of the numbers of the thesis' Table 2, so there is no comparison with "
-    "them.";
+    "Table 2 of the thesis lists obstacles, N and windows, as in the scenes above. It has no "
+    "results to compare with.";
 constexpr std::string_view kAboutSignals =
     "The share of an impulse or an oscillation that remains, and the largest error at a step (as "
     "a share of its height) or in a ramp (as a share of its rise per beam).";
