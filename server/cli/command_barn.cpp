@@ -1,6 +1,5 @@
 // server/cli/command_barn.cpp: `tautline barn`: runs the BARN worlds and scores them by the
 // official formula.
-#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <memory>
@@ -135,10 +134,7 @@ void write_scenarios(const std::vector<barn::World>& worlds,
 int execute(BarnCommand command) {
   std::vector<barn::World> worlds = barn::read_worlds(command.file);
   if (!command.only.empty()) {
-    std::erase_if(worlds, [&](const barn::World& world) {
-      return std::ranges::find(command.only, world.id) == command.only.end();
-    });
-    if (worlds.empty()) throw std::runtime_error("no world of the file has such a number");
+    worlds = barn::worlds_numbered(std::move(worlds), command.only);
   }
   command.options.conditions.controller = command.controllers.chosen().value_or("");
   command.options.conditions.controllers = command.controllers.catalogue();

@@ -1,6 +1,10 @@
 // server/experiment/barn_file.cpp: reads worlds and sets up the benchmark's robot.
 #include "server/experiment/barn_file.hpp"
 
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "algo/filter/filter.hpp"
@@ -137,6 +141,19 @@ std::vector<World> read_worlds(const std::string& file) {
   } catch (const DocumentError& e) {
     throw std::runtime_error(file + ": " + e.what());
   }
+}
+
+std::vector<World> worlds_numbered(std::vector<World> worlds,
+                                   const std::vector<std::uint64_t>& numbers) {
+  for (const std::uint64_t number : numbers) {
+    if (std::ranges::find(worlds, number, &World::id) == worlds.end()) {
+      throw std::runtime_error(fmt::format("no world of the file has the number {}", number));
+    }
+  }
+  std::erase_if(worlds, [&](const World& world) {
+    return std::ranges::find(numbers, world.id) == numbers.end();
+  });
+  return worlds;
 }
 
 sim::Scenario scenario_of(const World& world, const Conditions& conditions) {

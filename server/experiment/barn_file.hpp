@@ -48,6 +48,11 @@ struct Conditions {
 std::vector<World> read_worlds(const std::string& file);
 std::vector<World> worlds_from_json(const nlohmann::json& document);
 
+/// Those of `worlds` with these numbers, in their order. Throws std::runtime_error naming a number
+/// that none has.
+std::vector<World> worlds_numbered(std::vector<World> worlds,
+                                   const std::vector<std::uint64_t>& numbers);
+
 sim::Scenario scenario_of(const World& world, const Conditions& conditions);
 
 }  // namespace server::barn

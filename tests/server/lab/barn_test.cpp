@@ -77,6 +77,21 @@ TEST(BarnFile, NamesTheErrorAndItsPlace) {
   EXPECT_THROW(read_worlds("/nowhere/worlds.json"), std::runtime_error);
 }
 
+TEST(BarnFile, WorldsAreChosenByNumberAndOneThatIsNotThereIsNamed) {
+  const std::vector<World> worlds{worlds_from_json(crossing()).at(0),
+                                  worlds_from_json(lane()).at(0)};
+  const std::vector<World> chosen = worlds_numbered(worlds, {7});
+  ASSERT_EQ(chosen.size(), 1U);
+  EXPECT_EQ(chosen.front().id, 7U);
+  EXPECT_EQ(worlds_numbered(worlds, {7, 8}).front().id, 8U);
+  try {
+    worlds_numbered(worlds, {7, 9});
+    FAIL() << "world 9 is not there";
+  } catch (const std::runtime_error& e) {
+    EXPECT_STREQ(e.what(), "no world of the file has the number 9");
+  }
+}
+
 TEST(BarnFile, ItsScenariosComeBackFromTheirDocuments) {
   for (const json& document : {lane(), crossing()}) {
     for (const bool stress : {false, true}) {
