@@ -8,7 +8,7 @@ namespace algo {
 namespace {
 
 constexpr double kTimeConstant = 0.1;  // [s]
-constexpr double kOtherSide = 0.1;     // [rad/s] a slower turn to the other side is no turn,
+constexpr double kOtherSide = 0.15;    // [rad/s] a slower turn to the other side is no turn,
 constexpr double kTrim = 0.04;         // [rad/s] but a correction of at most this much
 constexpr double kSided = 0.045;       // [rad/s] a slower command has no side
 constexpr double kRounding = 1e-9;     // of the jerk, relative
