@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "server/run/forwarding_robot.hpp"
+
 namespace server::experiment {
 namespace {
 
@@ -18,34 +20,28 @@ double cpu_time() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// Wraps a robot and times each control tick: from the observation to the call of ground_truth(),
-/// which the loop makes right after the tick.
-class TimedRobot final : public algo::Robot {
+/// Stands before a robot and times each control tick: from the observation to the call of
+/// ground_truth(), which the loop makes right after the tick.
+class TimedRobot final : public ForwardingRobot {
  public:
   TimedRobot(std::unique_ptr<algo::Robot> robot, std::vector<float>& tick_us)
-      : robot_(std::move(robot)), tick_us_(tick_us) {}
+      : ForwardingRobot(std::move(robot)), tick_us_(tick_us) {}
 
-  const algo::RobotSpec& spec() const override { return robot_->spec(); }
   void reset(algo::Observation& observation) override {
-    robot_->reset(observation);
+    ForwardingRobot::reset(observation);
     begin_ = cpu_time();
   }
   bool step(const algo::Command& command, algo::Observation& observation) override {
-    const bool stepped = robot_->step(command, observation);
+    const bool stepped = ForwardingRobot::step(command, observation);
     begin_ = cpu_time();
     return stepped;
   }
-  void stop() noexcept override { robot_->stop(); }
-  double next_period() const override { return robot_->next_period(); }
-  algo::Arming* arming() override { return robot_->arming(); }
-  algo::Editing* editing() override { return robot_->editing(); }
   std::optional<algo::GroundTruth> ground_truth() const override {
     tick_us_.push_back(static_cast<float>((cpu_time() - begin_) * 1e6));
-    return robot_->ground_truth();
+    return ForwardingRobot::ground_truth();
   }
 
  private:
-  std::unique_ptr<algo::Robot> robot_;
   std::vector<float>& tick_us_;
   double begin_ = 0;  // [s]
 };

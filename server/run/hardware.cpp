@@ -12,6 +12,7 @@
 #include "drivers/lms200_scan.hpp"
 #include "drivers/scanner.hpp"
 #include "drivers/serial_robot.hpp"
+#include "server/run/forwarding_robot.hpp"
 
 namespace server {
 namespace {
@@ -53,23 +54,12 @@ json device_json(const algo::DeviceReport& device) {
 }
 
 /// One run of a robot that outlives the run. Disarms it at the end.
-class HardwareRun final : public algo::Robot {
+class HardwareRun final : public ForwardingRobot {
  public:
-  explicit HardwareRun(std::shared_ptr<algo::Robot> robot) : robot_(std::move(robot)) {}
-  ~HardwareRun() override { robot_->arming()->disarm(""); }
+  explicit HardwareRun(std::shared_ptr<algo::Robot> robot) : ForwardingRobot(std::move(robot)) {}
+  ~HardwareRun() override { ForwardingRobot::arming()->disarm(""); }
   HardwareRun(const HardwareRun&) = delete;
   HardwareRun& operator=(const HardwareRun&) = delete;
-
-  const algo::RobotSpec& spec() const override { return robot_->spec(); }
-  void reset(algo::Observation& observation) override { robot_->reset(observation); }
-  bool step(const algo::Command& command, algo::Observation& observation) override {
-    return robot_->step(command, observation);
-  }
-  void stop() noexcept override { robot_->stop(); }
-  algo::Arming* arming() override { return robot_->arming(); }
-
- private:
-  std::shared_ptr<algo::Robot> robot_;
 };
 
 }  // namespace

@@ -32,13 +32,13 @@ std::shared_ptr<const KnownMap> known_map(const std::filesystem::path& yaml) {
                std::make_shared<const algo::DrawnSpace>(drawn_space(cells))});
 }
 
-MapRobot::MapRobot(std::unique_ptr<algo::Robot> robot,
+MapRobot::MapRobot(std::shared_ptr<algo::Robot> robot,
                    const KnownMap& map,
                    const std::optional<algo::Pose2>& start_W)
-    : robot_(std::move(robot)), localizer_(map.walls), start_W_(start_W) {}
+    : ForwardingRobot(std::move(robot)), localizer_(map.walls), start_W_(start_W) {}
 
 void MapRobot::reset(algo::Observation& observation) {
-  robot_->reset(observation);
+  ForwardingRobot::reset(observation);
   localizer_.restart();
   if (start_W_) localizer_.start(*start_W_);
   trail_.reset();
@@ -51,7 +51,7 @@ void MapRobot::reset(algo::Observation& observation) {
 }
 
 bool MapRobot::step(const algo::Command& command, algo::Observation& observation) {
-  if (!robot_->step(command, observation)) return false;
+  if (!ForwardingRobot::step(command, observation)) return false;
   locate(observation);
   return true;
 }

@@ -11,6 +11,7 @@
 #include "algo/mapping/map_localizer.hpp"
 #include "algo/mapping/occupancy_map.hpp"
 #include "algo/robot.hpp"
+#include "server/run/forwarding_robot.hpp"
 
 namespace server {
 
@@ -31,24 +32,16 @@ std::shared_ptr<const KnownMap> known_map(const std::filesystem::path& yaml);
 /// record see nothing but this observation, so a replay needs neither map nor localizer.
 ///
 /// While the robot is not located, its pose goes on by the wheels alone, and the gate holds it.
-class MapRobot final : public algo::Robot, public algo::Locating {
+class MapRobot final : public ForwardingRobot, public algo::Locating {
  public:
   /// `start_W`: the robot begins there, if that is known.
-  MapRobot(std::unique_ptr<algo::Robot> robot,
+  MapRobot(std::shared_ptr<algo::Robot> robot,
            const KnownMap& map,
            const std::optional<algo::Pose2>& start_W);
 
-  const algo::RobotSpec& spec() const override { return robot_->spec(); }
   void reset(algo::Observation& observation) override;
   bool step(const algo::Command& command, algo::Observation& observation) override;
-  double next_period() const override { return robot_->next_period(); }
-  void stop() noexcept override { robot_->stop(); }
-  algo::Arming* arming() override { return robot_->arming(); }
-  algo::Editing* editing() override { return robot_->editing(); }
-  algo::Publishing* publishing() override { return robot_->publishing(); }
   algo::Locating* locating() override { return this; }
-  std::optional<algo::GroundTruth> ground_truth() const override { return robot_->ground_truth(); }
-  void find_moved(algo::Recycled<algo::Moved>& moved) const override { robot_->find_moved(moved); }
 
   void place(const algo::SetInitialPose& at) override;
 
@@ -56,7 +49,6 @@ class MapRobot final : public algo::Robot, public algo::Locating {
   void locate(algo::Observation& observation);
   void correct(algo::Observation& observation);
 
-  std::unique_ptr<algo::Robot> robot_;
   algo::MapLocalizer localizer_;
   std::optional<algo::Pose2> start_W_{};
   algo::ScanPoints trail_{};

@@ -6,14 +6,14 @@
 namespace server {
 
 void MatchedRobot::reset(algo::Observation& observation) {
-  robot_->reset(observation);
+  ForwardingRobot::reset(observation);
   trail_.reset();
   odometry_.reset(observation.odometry.pose, observation.odometry.pose);
   correct(observation);
 }
 
 bool MatchedRobot::step(const algo::Command& command, algo::Observation& observation) {
-  if (!robot_->step(command, observation)) return false;
+  if (!ForwardingRobot::step(command, observation)) return false;
   correct(observation);
   return true;
 }
