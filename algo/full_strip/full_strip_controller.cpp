@@ -231,6 +231,7 @@ void FullStripController::update(const ControlInput& in,
   take_goal(in);
   route_.update(route_settings(parameters), plan_world(), in.odometry.pose.position(), in.stamp);
   if (route_.doubts()) senses_.forget_doubtful();
+  if (route_.doubts_old()) senses_.forget_old();
   const StageInput stage = stage_input(in);
   const StripCommand command = drive(stage, in, parameters);
   state_ = command.state;

@@ -21,6 +21,8 @@ class StripSenses {
 
   /// Frees what is in the map on little evidence.
   void forget_doubtful() { map_.forget_doubtful(); }
+  /// Frees what the robot has not seen for long.
+  void forget_old() { map_.forget_old(); }
 
   const LocalMap& map() const { return map_; }
   const BuildingMemory& memory() const { return memory_; }
