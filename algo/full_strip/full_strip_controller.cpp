@@ -89,6 +89,7 @@ RouteSettings FullStripController::route_settings(const Parameters& parameters) 
 void FullStripController::take_goal(const ControlInput& in) {
   if (!route_.goal_W() || *route_.goal_W() != in.goal->position_W) {
     route_.set_goal(in.goal->position_W, in.stamp);
+    senses_.forget_old();
     forget_attempts(in);
   } else if (in.interrupted) {
     forget_attempts(in);
@@ -231,7 +232,6 @@ void FullStripController::update(const ControlInput& in,
   take_goal(in);
   route_.update(route_settings(parameters), plan_world(), in.odometry.pose.position(), in.stamp);
   if (route_.doubts()) senses_.forget_doubtful();
-  if (route_.doubts_old()) senses_.forget_old();
   const StageInput stage = stage_input(in);
   const StripCommand command = drive(stage, in, parameters);
   state_ = command.state;

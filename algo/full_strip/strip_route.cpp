@@ -51,8 +51,6 @@ void StripRoute::set_goal(const Vec2& goal_W, double now) {
   walls_ = DrawnWalls::Shut;
   doubted_until_ = now;
   doubts_ = false;
-  doubts_old_ = false;
-  looked_again_ = false;
   goal_taken_ = false;
   tight_since_.reset();
   broken_at_ = -1;
@@ -76,7 +74,6 @@ void StripRoute::update(const RouteSettings& settings,
                         double now) {
   settings_ = settings;
   doubts_ = false;
-  doubts_old_ = false;
   settings_.strip.least_clearance = step_cost().least - settings_.break_room;
   ease_last_leg(world.map, here_W);
   stretch(world.map, here_W, now);
@@ -169,8 +166,7 @@ void StripRoute::note_closure(const PlanWorld& world) {
 }
 
 /// A search has found no way. The first one to the goal in a row makes the map drop its doubtful
-/// cells, the third, a lenient one, its old cells: a thing may have moved. The next time there is
-/// no way, or else the robot would look at the ends of lanes in turn for ever.
+/// cells. After the third, a lenient one, there is no way.
 void StripRoute::fail(const PlanWorld& world, const Vec2& here_W, double now) {
   if (aim_ == Aim::Reach) {
     watch_ = Watch{planner_.closest_W(), *goal_W_, {}};
@@ -190,13 +186,6 @@ void StripRoute::fail(const PlanWorld& world, const Vec2& here_W, double now) {
     next_plan_ = now + kDoubtTime;
   }
   if (!no_way()) return;
-  if (!looked_again_ && !closure_ && !watch_) {
-    looked_again_ = true;
-    doubts_old_ = true;
-    failures_ = 0;
-    next_plan_ = now + kDoubtTime;
-    return;
-  }
   next_plan_ = now + kAgainAfter;
   wait_for_way(world, here_W, now);
 }

@@ -51,8 +51,6 @@ class StripRoute {
   bool no_way() const { return failures_ >= kSurely; }
   /// A search has just found no way, and the map should drop what it knows on little evidence.
   bool doubts() const { return doubts_; }
-  /// There is no way by what the robot has seen lately, and the map should drop what is old.
-  bool doubts_old() const { return doubts_old_; }
   /// Without a way, at the place to wait at: the point that the robot should look at.
   std::optional<Vec2> watched_W() const {
     return watch_ && strip_.empty() ? std::optional(watch_->at_W) : std::nullopt;
@@ -111,9 +109,7 @@ class StripRoute {
   std::optional<Watch> closure_{};  // a place that had been free for long and was then shut
   std::optional<Watch> watch_{};
   bool doubts_ = false;
-  bool doubts_old_ = false;
-  bool looked_again_ = false;  // on the way to this goal: the old is dropped once
-  int failures_ = 0;           // searches in a row without a way
+  int failures_ = 0;  // searches in a row without a way
   DrawnWalls walls_ = DrawnWalls::Shut;
   double doubted_until_ = 0;  // [s] run clock: then the walls of the map count as shut again
   bool goal_taken_ = false;
