@@ -89,6 +89,7 @@ RouteSettings FullStripController::route_settings(const Parameters& parameters) 
 void FullStripController::take_goal(const ControlInput& in) {
   if (!route_.goal_W() || *route_.goal_W() != in.goal->position_W) {
     route_.set_goal(in.goal->position_W, in.stamp);
+    senses_.forget_old();
     forget_attempts(in);
   } else if (in.interrupted) {
     forget_attempts(in);

@@ -12,8 +12,7 @@
 namespace algo {
 namespace {
 
-constexpr std::uint8_t kHit = 2;         // added by a hit,
-constexpr std::uint8_t kMost = 8;        // up to this;
+constexpr std::uint8_t kHit = 2;         // added by a hit, up to kMost
 constexpr std::uint8_t kSure = 6;        // hits from which a cell is not doubted
 constexpr int kLook = 2;                 // removed when a beam passes
 constexpr double kBeyond = 0.15;         // [m] a beam must go on this far behind a cell to clear it
@@ -114,7 +113,7 @@ void LocalMap::insert(const LaserScan& scan,
   look_through(scan, sensor_W);
   space_.look(scan, sensor_W);
   doubt_suspects();
-  if (scans_ % kAgeEvery == 0) age();
+  if (ageing_ == Ageing::ByScans && scans_ % kAgeEvery == 0) age(1);
   if (field_) field_->rebuild(std::span(hits_.get(), kCells), kOccupied);
 }
 
@@ -211,7 +210,8 @@ void LocalMap::forget_doubtful() {
   }
 }
 
-void LocalMap::age() {
+/// Removes hits from the old cells.
+void LocalMap::age(int by) {
   for (std::size_t i = 0; i < active_.size();) {
     const std::size_t cell = active_[i];
     const auto since = static_cast<std::uint16_t>(now() - seen_[cell]);
@@ -219,7 +219,7 @@ void LocalMap::age() {
       ++i;
       continue;
     }
-    weaken(cell, 1);
+    weaken(cell, by);
     if (hits_[cell] >= kOccupied) {
       ++i;
       continue;

@@ -25,13 +25,15 @@ namespace algo {
 ///
 /// A cell is occupied after two hits. It is free again after the scanner has looked through it
 /// several times. Where the scanner does not look, a cell ages, and then counts as never seen. Ages
-/// count scans, or the robot's way. Allocates in the constructor only.
+/// count scans, and old cells fade; or they count the robot's way, and old cells stay until
+/// forget_old(). Allocates in the constructor only.
 class LocalMap {
  public:
   static constexpr double kCell = DistanceField::kCell;    // [m]
   static constexpr int kSize = DistanceField::kSize;       // cells along an edge: 25.6 m
   static constexpr double kReach = DistanceField::kReach;  // [m] distances are known up to here
   static constexpr std::uint8_t kOccupied = 3;             // hits that make a cell occupied: two
+  static constexpr std::uint8_t kMost = 8;                 // hits that count
 
   /// Whether to keep the distances to the nearest occupied cell, which take half of a map's memory
   /// and most of its work. Without them do not call distance(), gradient(), sees() or
@@ -44,8 +46,7 @@ class LocalMap {
   /// Forgets everything and centres the window on `centre_W`.
   void reset(const Vec2& centre_W);
 
-  /// Sets the number of scans, or of kWayUnit of way, without a hit after which a cell begins to
-  /// fade.
+  /// Sets the number of scans, or of kWayUnit of way, without a hit after which a cell is old.
   void remember_for(std::uint16_t age) { age_after_ = age; }
   static constexpr double kWayUnit = 0.1;  // [m]
 
@@ -76,6 +77,8 @@ class LocalMap {
 
   /// Frees the cells with few hits: ghosts at the edges of things have few, walls have many.
   void forget_doubtful();
+  /// Frees the old cells, which then count as never seen.
+  void forget_old() { age(kMost); }
 
   /// [m] Distance from `p_W` to the nearest occupied cell's centre, at most kReach; kReach outside.
   double distance(const Vec2& p_W) const;
@@ -142,7 +145,7 @@ class LocalMap {
   void hit(const Vec2& point_W);
   void look_through(const LaserScan& scan, const Pose2& sensor_W);
   void doubt_suspects();
-  void age();
+  void age(int by);
   bool weaken(std::size_t cell, int by);
   void clear(std::size_t cell);
   void drop_active(std::size_t i);

@@ -9,7 +9,7 @@ namespace algo {
 namespace {
 
 constexpr double kTrace = 0.25;      // [m] around an obstacle found moving: its traces in the map
-constexpr double kRemembered = 100;  // [m] of way, after which a wall not seen again fades
+constexpr double kRemembered = 100;  // [m] of way, after which a wall not seen again is old
 constexpr int kSurveyed = 8;         // tiles of the map a tick, for planning
 
 }  // namespace

@@ -21,6 +21,9 @@ class StripSenses {
 
   /// Frees what is in the map on little evidence.
   void forget_doubtful() { map_.forget_doubtful(); }
+  /// Frees what the robot has not seen for long, once for a goal. If walls faded while it searches,
+  /// it would look at the ends of lanes in turn for ever.
+  void forget_old() { map_.forget_old(); }
 
   const LocalMap& map() const { return map_; }
   const BuildingMemory& memory() const { return memory_; }

@@ -57,6 +57,55 @@ TEST(MixedBeam, AnEndBetweenAnEdgeAndTheWallBehindItIsMixed) {
   }
 }
 
+/// Through a slit between a jamb and a wall behind it, into a lane. The end lies in the lane.
+TEST(MixedBeam, AnEndBeyondASlitIsMixed) {
+  algo::LaserScan scan = free_sweep();
+  for (std::size_t i = 0; i < 181; ++i) scan.set_ok(i, 0.78);
+  for (std::size_t i = 181; i < scan.size(); ++i) scan.set_ok(i, 2.15);
+  scan.set_ok(180, 2.41);
+  scan.set_ok(181, 2.65);
+  EXPECT_TRUE(algo::is_mixed(scan, 180));
+  EXPECT_TRUE(algo::is_mixed(scan, 181));
+  EXPECT_FALSE(algo::is_mixed(scan, 177));
+  EXPECT_FALSE(algo::is_mixed(scan, 184));
+}
+
+TEST(MixedBeam, AnEndBehindAnEdgeIsMixedIfNothingIsWithinRangeBehindIt) {
+  algo::LaserScan scan = free_sweep();
+  for (std::size_t i = 170; i < 180; ++i) scan.set_ok(i, 5);
+  EXPECT_FALSE(algo::is_mixed(scan, 179)) << "the edge itself";
+  scan.set_ok(180, 6);
+  EXPECT_TRUE(algo::is_mixed(scan, 180));
+}
+
+/// Beyond the outermost beams nothing tells if a surface goes on.
+TEST(MixedBeam, AnOutermostEndIsMixedUnlessItsOnlyNeighbourIsOnItsSurface) {
+  algo::LaserScan scan = free_sweep();
+  for (std::size_t i = 0; i < scan.size(); ++i) scan.set_ok(i, 0.8);
+  for (const std::size_t i : {0U, 1U, 359U, 360U}) {
+    EXPECT_FALSE(algo::is_mixed(scan, i)) << i;
+    scan.set_ok(i, 1.1);
+    EXPECT_TRUE(algo::is_mixed(scan, i)) << i;
+    scan.set_ok(i, 0.8);
+  }
+}
+
+TEST(MixedBeam, TheCornerBetweenTwoWallsIsNotMixed) {
+  for (const double turned : {0.1, 0.4, 0.8}) {
+    algo::LaserScan scan = free_sweep();
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      const double to_one = 5 / std::cos(scan.angle(i) - turned);
+      const double to_other = 3 / std::cos(scan.angle(i) - turned + std::numbers::pi / 2);
+      const double ahead = to_one > 0 ? to_one : 100;
+      const double range = std::min(ahead, to_other > 0 ? to_other : 100);
+      if (range < scan.range_max) scan.set_ok(i, range);
+    }
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      EXPECT_FALSE(algo::is_mixed(scan, i)) << i << " turned by " << turned;
+    }
+  }
+}
+
 TEST(MixedBeam, ALegBeforeAWallIsNotMixed) {
   algo::LaserScan scan = free_sweep();
   for (std::size_t i = 0; i < scan.size(); ++i) scan.set_ok(i, 5);

@@ -143,6 +143,28 @@ TEST(LocalMap, FadingCellsAreNeverFree) {
   EXPECT_TRUE(faded);
 }
 
+/// The end of a lane that no beam reaches stays, however far the robot drives, until it is asked to
+/// forget it: else the robot would look at the ends of lanes in turn for ever.
+TEST(LocalMap, ByWayOldCellsStayUntilTheyAreForgotten) {
+  LocalMap map(LocalMap::Distances::Kept, LocalMap::Ageing::ByWay);
+  constexpr double kOld = 5;  // [m]
+  map.remember_for(static_cast<std::uint16_t>(kOld / LocalMap::kWayUnit));
+  const Vec2 front{1.2, 0};
+  const Vec2 later{-1.2, 0};
+  see(map, post(1.5, 0, 0.3), {0, 0, 0}, 6);
+  for (int k = 0; k < 600; ++k) {
+    map.follow({0, 0.1 * (k % 2)});
+    see(map, {}, {0, 0, std::numbers::pi});
+  }
+  EXPECT_LT(map.distance(front), 0.08);
+  see(map, post(-1.5, 0, 0.3), {0, 0, std::numbers::pi}, 6);
+  map.forget_old();
+  for (int k = 0; k < 60; ++k) see(map, {}, {0, 5, 0});  // until all rebuilds are done
+  EXPECT_EQ(map.distance(front), LocalMap::kReach);
+  EXPECT_FALSE(map.seen().seen(front));
+  EXPECT_LT(map.distance(later), 0.08) << "seen lately";
+}
+
 /// A single return may be a stray, but the cell must not count as free.
 TEST(LocalMap, SuspectedCellsAreNotFree) {
   LocalMap map;
