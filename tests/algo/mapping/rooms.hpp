@@ -1,8 +1,7 @@
-// tests/algo/mapping/rooms.hpp: a room to map, its scans, and a drive through it; a flat likewise.
+// tests/algo/mapping/rooms.hpp: a room to map, its scans, and a drive through it; a hall likewise.
 #pragma once
 
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "tests/algo/worlds.hpp"
@@ -22,18 +21,19 @@ inline worlds::World room() {
   return world;
 }
 
-/// Four rooms of 5 x 5 m about the origin. The walls between them are 0.1 m thick, and each has a
-/// door of 1 m.
-inline worlds::World flat() {
+/// A room of 6 x 6 m about the origin within a hall. Its walls are 0.1 m thick, and the south one
+/// has a door of 1 m.
+inline worlds::World room_in_hall() {
   worlds::World world;
   const auto add = [&](const algo::Vec2& low, const algo::Vec2& high) {
     world.polygons.push_back({low, {high.x(), low.y()}, high, {low.x(), high.y()}});
   };
-  add({-5, -5}, {5, 5});
-  for (const auto& [from, to] : {std::pair{-5.0, -3.0}, {-2.0, 2.0}, {3.0, 5.0}}) {
-    add({from, -0.05}, {to, 0.05});
-    add({-0.05, from}, {0.05, to});
-  }
+  add({-7, -7}, {7, 7});
+  add({-3.1, -3.1}, {-0.5, -3});
+  add({0.5, -3.1}, {3.1, -3});
+  add({-3.1, 3}, {3.1, 3.1});
+  add({-3.1, -3}, {-3, 3});
+  add({3, -3}, {3.1, 3});
   return world;
 }
 
@@ -54,13 +54,18 @@ inline std::vector<algo::Pose2> round_trip(int steps) {
   return path_W;
 }
 
-/// One lap through the doors of the flat, in `steps` poses; the last equals the first.
-inline std::vector<algo::Pose2> trip_through_doors(int steps) {
+/// Once around the room in the hall, then `laps` laps within it.
+inline std::vector<algo::Pose2> round_and_in(int laps) {
   std::vector<algo::Pose2> path_W;
-  for (int k = 0; k <= steps; ++k) {
-    const double a = 2 * std::numbers::pi * k / steps;
-    path_W.push_back({2.5 * std::sin(a), -2.5 * std::cos(a), algo::wrap_angle(a)});
-  }
+  const auto circle = [&](double radius, int steps, int turns) {
+    for (int k = 0; k <= steps * turns; ++k) {
+      const double a = 2 * std::numbers::pi * k / steps;
+      path_W.push_back({radius * std::sin(a), -radius * std::cos(a), algo::wrap_angle(a)});
+    }
+  };
+  circle(5, 160, 1);
+  for (int k = 0; k <= 20; ++k) path_W.push_back({0, -5 + 0.175 * k, std::numbers::pi / 2});
+  circle(1.5, 60, laps);
   return path_W;
 }
 
