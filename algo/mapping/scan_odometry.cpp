@@ -28,7 +28,7 @@ struct FacesSeen {
   }
 };
 
-/// The first point from `i` on, in steps of `by`, that is kHalfChord from it; point `i` if none is
+/// The first point after `i`, or before it, that is kHalfChord from it; point `i` if none is
 /// within kChordReach.
 Vec2 chord_end(std::span<const Vec2> points_R, std::size_t i, bool ahead) {
   const std::size_t count = ahead ? points_R.size() - i : i + 1;

@@ -21,6 +21,9 @@ namespace algo {
 /// scanner's sight, is remembered in that frame. Unlike GraphMapper it closes no loops, and the
 /// drift of one way round a loop must stay below the reach of the matcher, 0.5 m.
 ///
+/// A scan is matched only to the faces of walls that its scanner can see. With both faces of a thin
+/// wall in the map, the line through all points lies between them, or there is no line.
+///
 /// Memory grows with the area seen and not with the way driven. The same input gives the same poses
 /// bit for bit.
 class ScanOdometry {
