@@ -1,6 +1,7 @@
 // algo/mapping/occupancy_map.cpp: enters beams into cells.
 #include "algo/mapping/occupancy_map.hpp"
 
+#include <cmath>
 #include <limits>
 #include <tuple>
 
@@ -9,6 +10,7 @@ namespace {
 
 constexpr std::uint16_t kMost = std::numeric_limits<std::uint16_t>::max();
 constexpr std::uint16_t kFresh = 64;  // hits after which a cell's mean becomes a slow average
+constexpr int kFreshNormals = 8;      // likewise of its normals
 
 }  // namespace
 
@@ -38,7 +40,7 @@ void OccupancyMap::pass(const Vec2& from_W, const Vec2& to_W) {
   }
 }
 
-void OccupancyMap::hit(const Vec2& point_W) {
+OccupancyMap::Tally& OccupancyMap::hit(const Vec2& point_W) {
   const Index at = cell_of(point_W);
   Tally& tally = open(at);
   if (tally.hits < kMost) ++tally.hits;
@@ -46,6 +48,22 @@ void OccupancyMap::hit(const Vec2& point_W) {
   const float share = 1.0F / static_cast<float>(std::min(tally.hits, kFresh));
   tally.x += share * (static_cast<float>(off.x()) - tally.x);
   tally.y += share * (static_cast<float>(off.y()) - tally.y);
+  return tally;
+}
+
+void OccupancyMap::face(Tally& tally, const Vec2& normal_W) {
+  const double share = 1.0 / std::min<int>(tally.hits, kFreshNormals);
+  const auto mean = [&](std::int8_t old, double value) {
+    return static_cast<std::int8_t>(std::lround(old + share * (Tally::kUnit * value - old)));
+  };
+  tally.normal_x = mean(tally.normal_x, normal_W.x());
+  tally.normal_y = mean(tally.normal_y, normal_W.y());
+}
+
+bool OccupancyMap::Tally::faces(const Vec2& side_W) const {
+  constexpr int kSure = kUnit / 2;  // a shorter mean is of both sides
+  const Vec2 normal(normal_x, normal_y);
+  return normal.squaredNorm() < kSure * kSure || normal.dot(side_W) > 0;
 }
 
 void OccupancyMap::mark_free(const Vec2& p_W) {

@@ -27,10 +27,15 @@ class OccupancyMap {
     float x = 0, y = 0;        // [m] mean of the hits, from the cell's centre
     std::uint16_t hits = 0;    // beams that ended here
     std::uint16_t passes = 0;  // beams that went through
+    /// Mean of the unit normals that the hits came with, in 1 / kUnit.
+    std::int8_t normal_x = 0, normal_y = 0;
     bool known() const { return hits > 0 || passes > 0; }
     /// Beams pass often through cells of walls seen at a slant, and far more often through those of
     /// things that left.
     bool occupied() const { return hits > 0 && 4 * hits >= passes; }
+    static constexpr int kUnit = 100;
+    /// False if all hits came from the other side than `side_W` [m], of any length.
+    bool faces(const Vec2& side_W) const;
   };
   /// Cell (i, j) spans [i edge, (i + 1) edge) x [j edge, (j + 1) edge) of W; likewise a tile.
   struct Index {
@@ -48,6 +53,11 @@ class OccupancyMap {
     pass(from_W, to_W);
     hit(to_W);
   }
+  /// Likewise, on a surface whose unit normal is `normal_W`.
+  void insert(const Vec2& from_W, const Vec2& to_W, const Vec2& normal_W) {
+    pass(from_W, to_W);
+    face(hit(to_W), normal_W);
+  }
 
   /// Makes the cell of `p_W` a wall, or free, as a map read from a file says.
   void mark_wall(const Vec2& p_W) { hit(p_W); }
@@ -57,6 +67,11 @@ class OccupancyMap {
   /// `p_W`, with the mean of its hits.
   template <typename See>
   void each_near(const Vec2& p_W, double reach, See&& see) const {
+    each_tally_near(p_W, reach, [&](const Vec2& point_W, const Tally&) { see(point_W); });
+  }
+  /// Likewise `see(point_W, tally)`.
+  template <typename See>
+  void each_tally_near(const Vec2& p_W, double reach, See&& see) const {
     const Index low = cell_of(p_W - Vec2(reach, reach));
     const Index high = cell_of(p_W + Vec2(reach, reach));
     const Index first = tile_of(low);
@@ -71,7 +86,7 @@ class OccupancyMap {
         for (int j = from.j; j <= to.j; ++j) {
           for (int i = from.i; i <= to.i; ++i) {
             const Tally& tally = (*tile)[place({i, j})];
-            if (tally.occupied()) see(mean_W({i, j}, tally));
+            if (tally.occupied()) see(mean_W({i, j}, tally), tally);
           }
         }
       }
@@ -128,7 +143,8 @@ class OccupancyMap {
   }
   Tally& open(const Index& cell);
   void pass(const Vec2& from_W, const Vec2& to_W);
-  void hit(const Vec2& point_W);
+  Tally& hit(const Vec2& point_W);
+  static void face(Tally& tally, const Vec2& normal_W);
 
   double edge_ = 0;  // [m]
   std::unordered_map<std::uint64_t, std::unique_ptr<Tile>> tiles_{};

@@ -88,4 +88,29 @@ TEST(OccupancyMap, HasNoEdgeAndTakesMemoryWhereItSees) {
   EXPECT_LT(cells, 100U);
 }
 
+TEST(OccupancyMap, ACellFacesTheSideThatItWasSeenFrom) {
+  OccupancyMap map(0.1);
+  map.insert({1, 0}, {2.05, 0.05}, {-1, 0});
+  EXPECT_TRUE(map.at({20, 0}).faces({-1, 0}));
+  EXPECT_TRUE(map.at({20, 0}).faces({-0.1, 3}));
+  EXPECT_FALSE(map.at({20, 0}).faces({1, 0}));
+  EXPECT_FALSE(map.at({20, 0}).faces({0.1, 3}));
+}
+
+TEST(OccupancyMap, ACellSeenFromBothSidesFacesBoth) {
+  OccupancyMap map(0.1);
+  for (int k = 0; k < 20; ++k) {
+    map.insert({1, 0}, {2.05, 0.05}, {-1, 0});
+    map.insert({3, 0}, {2.05, 0.05}, {1, 0});
+  }
+  EXPECT_TRUE(map.at({20, 0}).faces({-1, 0}));
+  EXPECT_TRUE(map.at({20, 0}).faces({1, 0}));
+}
+
+TEST(OccupancyMap, ACellWithoutANormalFacesAllSides) {
+  OccupancyMap map(0.1);
+  map.insert({1, 0}, {2.05, 0.05});
+  EXPECT_TRUE(map.at({20, 0}).faces({1, 0}));
+}
+
 }  // namespace

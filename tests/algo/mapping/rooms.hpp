@@ -1,4 +1,4 @@
-// tests/algo/mapping/rooms.hpp: a room to map, its scans, and a drive through it.
+// tests/algo/mapping/rooms.hpp: a room to map, its scans, and a drive through it; a hall likewise.
 #pragma once
 
 #include <cmath>
@@ -21,9 +21,25 @@ inline worlds::World room() {
   return world;
 }
 
-inline algo::LaserScan scan_at(const algo::Pose2& pose_W) {
+/// A room of 6 x 6 m about the origin within a hall. Its walls are 0.1 m thick, and the south one
+/// has a door of 1 m.
+inline worlds::World room_in_hall() {
+  worlds::World world;
+  const auto add = [&](const algo::Vec2& low, const algo::Vec2& high) {
+    world.polygons.push_back({low, {high.x(), low.y()}, high, {low.x(), high.y()}});
+  };
+  add({-7, -7}, {7, 7});
+  add({-3.1, -3.1}, {-0.5, -3});
+  add({0.5, -3.1}, {3.1, -3});
+  add({-3.1, 3}, {3.1, 3.1});
+  add({-3.1, -3}, {-3, 3});
+  add({3, -3}, {3.1, 3});
+  return world;
+}
+
+inline algo::LaserScan scan_at(const algo::Pose2& pose_W, const worlds::World& world = room()) {
   algo::LaserScan scan;
-  worlds::scan_world(pose_W, room(), 20.0, scan);
+  worlds::scan_world(pose_W, world, 20.0, scan);
   return scan;
 }
 
@@ -35,6 +51,21 @@ inline std::vector<algo::Pose2> round_trip(int steps) {
     path_W.push_back({4 + 3.0 * std::sin(a), 0.6 - 1.2 * std::cos(a), 0});
     path_W.back().heading = std::atan2(1.2 * std::sin(a), 3.0 * std::cos(a));
   }
+  return path_W;
+}
+
+/// Once around the room in the hall, then `laps` laps within it.
+inline std::vector<algo::Pose2> round_and_in(int laps) {
+  std::vector<algo::Pose2> path_W;
+  const auto circle = [&](double radius, int steps, int turns) {
+    for (int k = 0; k <= steps * turns; ++k) {
+      const double a = 2 * std::numbers::pi * k / steps;
+      path_W.push_back({radius * std::sin(a), -radius * std::cos(a), algo::wrap_angle(a)});
+    }
+  };
+  circle(5, 160, 1);
+  for (int k = 0; k <= 20; ++k) path_W.push_back({0, -5 + 0.175 * k, std::numbers::pi / 2});
+  circle(1.5, 60, laps);
   return path_W;
 }
 
