@@ -80,7 +80,7 @@ void BuildingMemory::look(const LaserScan& scan, const Pose2& sensor_W) {
       const Cell c = cell_of(sensor_W.position() + scan.ranges[i] * way);
       get(tile_of(c.column), tile_of(c.row)).near |= std::uint64_t{1} << within(c);
     }
-    if (is_mixed(scan, i) && scan.ranges[i] < kLook) {
+    if (beam_end(scan, i) == BeamEnd::Between && scan.ranges[i] < kLook) {
       doubt(cell_of(sensor_W.position() + scan.ranges[i] * way));
     }
   }

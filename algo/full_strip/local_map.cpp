@@ -108,7 +108,10 @@ void LocalMap::insert(const LaserScan& scan,
   ++scans_;
   suspects_.clear();
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (scan.status[i] == Beam::Ok && !tracker.on_moving(i) && !is_mixed(scan, i)) hit(points_W[i]);
+    if (scan.status[i] == Beam::Ok && !tracker.on_moving(i) &&
+        beam_end(scan, i) == BeamEnd::Surface) {
+      hit(points_W[i]);
+    }
   }
   look_through(scan, sensor_W);
   space_.look(scan, sensor_W);

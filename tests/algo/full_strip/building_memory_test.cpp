@@ -43,54 +43,34 @@ TEST(BuildingMemory, CountsTheBeamsThatCrossACell) {
 }
 
 /// Along a wall beside the way at 0.5 m, through a door in it, and on along the wall behind it.
-TEST(MixedBeam, AnEndBetweenAnEdgeAndTheWallBehindItIsMixed) {
+TEST(MixedBeam, AnEndBetweenAnEdgeAndTheWallBehindItIsNoSurface) {
   algo::LaserScan scan = free_sweep();
   for (std::size_t i = 170; i < 176; ++i) scan.set_ok(i, 4.2);
   for (std::size_t i = 178; i < 185; ++i) scan.set_ok(i, 5.3);
   for (const double share : {0.3, 0.5, 0.7}) {
     scan.set_ok(176, 4.2 + share * 1.1);
     scan.set_ok(177, 4.2 + share * 1.1);  // doubled
-    EXPECT_TRUE(algo::is_mixed(scan, 176)) << share;
-    EXPECT_TRUE(algo::is_mixed(scan, 177)) << share;
-    EXPECT_FALSE(algo::is_mixed(scan, 173));
-    EXPECT_FALSE(algo::is_mixed(scan, 182));
+    EXPECT_EQ(algo::beam_end(scan, 176), algo::BeamEnd::Between) << share;
+    EXPECT_EQ(algo::beam_end(scan, 177), algo::BeamEnd::Between) << share;
+    EXPECT_EQ(algo::beam_end(scan, 173), algo::BeamEnd::Surface);
+    EXPECT_EQ(algo::beam_end(scan, 182), algo::BeamEnd::Surface);
   }
 }
 
 /// Through a slit between a jamb and a wall behind it, into a lane. The end lies in the lane.
-TEST(MixedBeam, AnEndBeyondASlitIsMixed) {
+TEST(MixedBeam, AnEndBeyondASlitIsNoSurface) {
   algo::LaserScan scan = free_sweep();
   for (std::size_t i = 0; i < 181; ++i) scan.set_ok(i, 0.78);
   for (std::size_t i = 181; i < scan.size(); ++i) scan.set_ok(i, 2.15);
   scan.set_ok(180, 2.41);
   scan.set_ok(181, 2.65);
-  EXPECT_TRUE(algo::is_mixed(scan, 180));
-  EXPECT_TRUE(algo::is_mixed(scan, 181));
-  EXPECT_FALSE(algo::is_mixed(scan, 177));
-  EXPECT_FALSE(algo::is_mixed(scan, 184));
+  EXPECT_EQ(algo::beam_end(scan, 180), algo::BeamEnd::Beyond);
+  EXPECT_EQ(algo::beam_end(scan, 181), algo::BeamEnd::Beyond);
+  EXPECT_EQ(algo::beam_end(scan, 177), algo::BeamEnd::Surface);
+  EXPECT_EQ(algo::beam_end(scan, 184), algo::BeamEnd::Surface);
 }
 
-TEST(MixedBeam, AnEndBehindAnEdgeIsMixedIfNothingIsWithinRangeBehindIt) {
-  algo::LaserScan scan = free_sweep();
-  for (std::size_t i = 170; i < 180; ++i) scan.set_ok(i, 5);
-  EXPECT_FALSE(algo::is_mixed(scan, 179)) << "the edge itself";
-  scan.set_ok(180, 6);
-  EXPECT_TRUE(algo::is_mixed(scan, 180));
-}
-
-/// Beyond the outermost beams nothing tells if a surface goes on.
-TEST(MixedBeam, AnOutermostEndIsMixedUnlessItsOnlyNeighbourIsOnItsSurface) {
-  algo::LaserScan scan = free_sweep();
-  for (std::size_t i = 0; i < scan.size(); ++i) scan.set_ok(i, 0.8);
-  for (const std::size_t i : {0U, 1U, 359U, 360U}) {
-    EXPECT_FALSE(algo::is_mixed(scan, i)) << i;
-    scan.set_ok(i, 1.1);
-    EXPECT_TRUE(algo::is_mixed(scan, i)) << i;
-    scan.set_ok(i, 0.8);
-  }
-}
-
-TEST(MixedBeam, TheCornerBetweenTwoWallsIsNotMixed) {
+TEST(MixedBeam, TheCornerBetweenTwoWallsIsASurface) {
   for (const double turned : {0.1, 0.4, 0.8}) {
     algo::LaserScan scan = free_sweep();
     for (std::size_t i = 0; i < scan.size(); ++i) {
@@ -101,22 +81,24 @@ TEST(MixedBeam, TheCornerBetweenTwoWallsIsNotMixed) {
       if (range < scan.range_max) scan.set_ok(i, range);
     }
     for (std::size_t i = 0; i < scan.size(); ++i) {
-      EXPECT_FALSE(algo::is_mixed(scan, i)) << i << " turned by " << turned;
+      EXPECT_EQ(algo::beam_end(scan, i), algo::BeamEnd::Surface) << i << " turned by " << turned;
     }
   }
 }
 
-TEST(MixedBeam, ALegBeforeAWallIsNotMixed) {
+TEST(MixedBeam, ALegBeforeAWallIsASurface) {
   algo::LaserScan scan = free_sweep();
   for (std::size_t i = 0; i < scan.size(); ++i) scan.set_ok(i, 5);
   scan.set_ok(180, 4.2);
-  for (std::size_t i = 0; i < scan.size(); ++i) EXPECT_FALSE(algo::is_mixed(scan, i)) << i;
+  for (std::size_t i = 0; i < scan.size(); ++i)
+    EXPECT_EQ(algo::beam_end(scan, i), algo::BeamEnd::Surface) << i;
 }
 
-TEST(MixedBeam, AWallAcrossTheBeamsIsNotMixed) {
+TEST(MixedBeam, AWallAcrossTheBeamsIsASurface) {
   algo::LaserScan scan = free_sweep();
   for (std::size_t i = 60; i < 300; ++i) scan.set_ok(i, 2 / std::cos(scan.angle(i)));
-  for (std::size_t i = 0; i < scan.size(); ++i) EXPECT_FALSE(algo::is_mixed(scan, i)) << i;
+  for (std::size_t i = 0; i < scan.size(); ++i)
+    EXPECT_EQ(algo::beam_end(scan, i), algo::BeamEnd::Surface) << i;
 }
 
 TEST(BuildingMemory, TellsWhatWasSeenFromNearby) {
