@@ -160,6 +160,7 @@ StageInput FullStripController::stage_input(const ControlInput& in) const {
   stage.limits = limits_;
   stage.course = course_;
   stage.dt = in.dt;
+  stage.close_W = &senses_.close_W();
   if (route_.broken_at() >= 0) stage.stop_at = std::max(0.0, route_.broken_at() - kStopShort);
   return stage;
 }

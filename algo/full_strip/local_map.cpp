@@ -21,8 +21,7 @@ constexpr std::uint32_t kAgeEvery = 64;  // scans between two checks of the cell
 constexpr double kFaded = 0.15;          // [m] around a faded cell: its obstacle may still be there
 
 constexpr std::size_t kCells = std::size_t{LocalMap::kSize} * LocalMap::kSize;
-constexpr std::size_t kMostBeams = 4096;  // of a scan; reserved from the start
-constexpr double kMiddle = 4.0;           // [m] the robot may be this far from the window's middle
+constexpr double kMiddle = 4.0;  // [m] the robot may be this far from the window's middle
 constexpr double kTileEdge = BuildingMemory::kTileEdge;  // [m]
 
 }  // namespace

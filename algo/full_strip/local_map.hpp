@@ -34,6 +34,7 @@ class LocalMap {
   static constexpr double kReach = DistanceField::kReach;  // [m] distances are known up to here
   static constexpr std::uint8_t kOccupied = 3;             // hits that make a cell occupied: two
   static constexpr std::uint8_t kMost = 8;                 // hits that count
+  static constexpr std::size_t kMostBeams = 4096;          // of a scan; reserved from the start
 
   /// Whether to keep the distances to the nearest occupied cell, which take half of a map's memory
   /// and most of its work. Without them do not call distance(), gradient(), sees() or

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "algo/full_strip/mixed_beam.hpp"
 #include "algo/full_strip/step_cost.hpp"
 
 namespace algo {
@@ -10,11 +11,13 @@ namespace {
 
 constexpr double kTrace = 0.25;      // [m] around an obstacle found moving: its traces in the map
 constexpr double kRemembered = 100;  // [m] of way, after which a wall not seen again is old
+constexpr double kClose = 0.15;      // [m] from the circle about the hull
 constexpr int kSurveyed = 8;         // tiles of the map a tick, for planning
 
 }  // namespace
 
 StripSenses::StripSenses() {
+  close_W_.reserve(LocalMap::kMostBeams);
   map_.remember_for(static_cast<std::uint16_t>(kRemembered / LocalMap::kWayUnit));
 }
 
@@ -23,6 +26,7 @@ void StripSenses::reset(const Pose2& start_W) {
   memory_.reset();
   tracker_.reset();
   points_.reset();
+  close_W_.clear();
   placed_ = false;
 }
 
@@ -39,11 +43,23 @@ void StripSenses::update(const ControlInput& in, const HullCheck& hull, bool tra
     if (track) tracker_.update(scan, sensor_W, points_.points_W());
     map_.insert(scan, sensor_W, points_.points_W(), tracker_);
     memory_.look(scan, sensor_W);
+    find_close(scan, in);
     forget_traces(in, hull);
   }
   const double least = StepCost::of_hull(hull.half_width(), hull.is_round()).least;
   map_.survey(kSurveyed, least, hull.is_round(), memory_);
   tracker_.predict(in.stamp);
+}
+
+void StripSenses::find_close(const LaserScan& scan, const ControlInput& in) {
+  const double reach = in.spec->radius + kClose;
+  close_W_.clear();
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    if (scan.status[i] != Beam::Ok || beam_end(scan, i) != BeamEnd::Surface) continue;
+    const Vec2& end_W = points_.points_W()[i];
+    if ((end_W - in.odometry.pose.position()).squaredNorm() < reach * reach)
+      close_W_.push_back(end_W);
+  }
 }
 
 /// Frees impossible obstacles from the map: on the way of an obstacle found moving, and inside the

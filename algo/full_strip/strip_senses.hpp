@@ -28,14 +28,18 @@ class StripSenses {
   const LocalMap& map() const { return map_; }
   const BuildingMemory& memory() const { return memory_; }
   const Tracker& tracker() const { return tracker_; }
+  /// The ends of the newest scan's beams that lie close to the hull.
+  const Recycled<Vec2>& close_W() const { return close_W_; }
 
  private:
+  void find_close(const LaserScan& scan, const ControlInput& in);
   void forget_traces(const ControlInput& in, const HullCheck& hull);
 
   ScanPoints points_{};
   LocalMap map_{LocalMap::Distances::Kept, LocalMap::Ageing::ByWay};
   BuildingMemory memory_{};
   Tracker tracker_{};
+  Recycled<Vec2> close_W_{};
   bool placed_ = false;  // the start pose is entered into the map
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace algo {
 namespace {
@@ -26,6 +27,7 @@ constexpr double kSlowMargin = 0.022;  // [m] need less room
 constexpr double kCloseAhead = 0.16;   // [m] ahead on the strip, their point to steer for
 constexpr double kFloor = 0.02;  // [m] below it only an escape is tried; above a scanner's error
 constexpr double kStepSlack = 0.002;    // [m] a position may be this much nearer than the last
+constexpr double kClosest = 0.022;      // [m] from a return: the scanner may err by 15 mm
 constexpr double kReverseSpeed = 0.24;  // [m/s]
 
 /// [m] Distance ahead of the robot of the point it steers for, at speed `v` [m/s] and `share` of
@@ -40,7 +42,26 @@ Twist2 within(const Twist2& twist, const MotionLimits& limits) {
           std::clamp(twist.omega, -limits.max_omega, limits.max_omega)};
 }
 
+/// [m] From the hull to the return next to the nearest one, which may be an outlier.
+double seen_room(const HullCheck& hull, const Recycled<Vec2>& returns_W, const Pose2& pose_W) {
+  double nearest = std::numeric_limits<double>::infinity();
+  double next = nearest;
+  for (const Vec2& return_W : returns_W) {
+    const double room = hull.distance(pose_W, return_W);
+    next = std::min(next, std::max(nearest, room));
+    nearest = std::min(nearest, room);
+  }
+  return next;
+}
+
 }  // namespace
+
+/// Whether the way to `next_W` leads nearer to what is almost touched.
+bool VelocityStage::nears_return(const StageInput& in, const Pose2& next_W) const {
+  if (in.close_W == nullptr) return false;
+  const double then = seen_room(hull_, *in.close_W, next_W);
+  return then < kClosest && then < seen_room(hull_, *in.close_W, in.state.pose_W);
+}
 
 /// The highest speed at each node: by room, curvature and turn rate, then such that the robot can
 /// brake for the nodes ahead.
@@ -134,6 +155,7 @@ bool VelocityStage::admissible(const StageInput& in,
     const Vec2 before = state.pose_W.position();
     state = advanced(state, command, in.limits, in.dt);
     s += (state.pose_W.position() - before).norm();
+    if (k == 0 && nears_return(in, state.pose_W)) return false;
     if (hull_.enters_unseen(in.map->seen(), state.pose_W, state.twist)) return false;
     const double room = hull_.clearance(*in.map, state.pose_W);
     if (room < margin) return false;
@@ -181,7 +203,8 @@ std::optional<Twist2> VelocityStage::proven(const StageInput& in,
   bool allowed = margin >= kFloor;
   for (int k = 0; allowed && k < 2; ++k) {
     state = advanced(state, wanted, in.limits, in.dt);
-    allowed = !hull_.enters_unseen(in.map->seen(), state.pose_W, state.twist) &&
+    allowed = !(k == 0 && nears_return(in, state.pose_W)) &&
+              !hull_.enters_unseen(in.map->seen(), state.pose_W, state.twist) &&
               hull_.clearance(*in.map, state.pose_W) >= margin;
   }
   allowed = allowed && rests_clear(*in.map, hull_, state, in.limits, in.dt, margin);
@@ -202,6 +225,7 @@ bool VelocityStage::holds(const StageInput& in,
   const int ticks = std::max(1, static_cast<int>(std::lround(horizon / in.dt)));
   for (int k = 0; k < ticks + 400; ++k) {
     state = advanced(state, k < ticks ? twist : Twist2{}, in.limits, in.dt);
+    if (k == 0 && nears_return(in, state.pose_W)) return false;
     if (hull_.enters_unseen(in.map->seen(), state.pose_W, state.twist)) return false;
     const double room = hull_.clearance(*in.map, state.pose_W);
     // Already too close: every step must lead away.

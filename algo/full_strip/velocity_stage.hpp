@@ -19,13 +19,17 @@ struct StageInput {
   CommandCourse course{};  // of the commands up to the last tick's
   double dt = 0;           // [s]
   double stop_at = -1;     // [m] along the strip, its end for now; negative: the goal
+  /// The ends of the newest scan's beams close to the hull; null: none.
+  const Recycled<Vec2>* close_W = nullptr;
 };
 
 /// Drives along the strip by pure pursuit. A command is admissible if the robot, following the
 /// strip for kHorizon and then braking to rest, keeps kMargin of room all the way and never backs
 /// into unseen space. The next tick then has an admissible command too: the rest of the same
 /// motion. The same must hold if the robot brakes after this one tick, as it does when the strip
-/// changes or a person presses Stop.
+/// changes or a person presses Stop. Nor may it bring the hull nearer to a return of the newest
+/// scan that is almost within the scanner's error: a cell of the map keeps a mean, which cuts
+/// corners.
 class VelocityStage {
  public:
   static constexpr double kHorizon = 1.0;  // [s]
@@ -59,6 +63,7 @@ class VelocityStage {
   double speed_at(double s) const;
   Twist2 pursue(const StageInput& in, const MotionState& state, double s, double share) const;
   std::optional<Twist2> turned_in_place(const StageInput& in) const;
+  bool nears_return(const StageInput& in, const Pose2& next_W) const;
   bool admissible(const StageInput& in, double share, Twist2& first, Vec2& aim_W) const;
   bool holds(const StageInput& in, const Twist2& twist, double horizon, double& gain) const;
 

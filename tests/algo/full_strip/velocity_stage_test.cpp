@@ -66,6 +66,22 @@ TEST(VelocityStage, DoesNotBackIntoForgottenSpace) {
   EXPECT_FALSE(s.stage.back_off(s.in, s.out));
 }
 
+/// A cell of the map keeps the mean of a corner's two faces, and a robot once touched the corner.
+TEST(VelocityStage, DrivesNoNearerToAReturnThatIsAlmostTouched) {
+  Stage s;
+  ASSERT_TRUE(s.stage.proven(s.in, {0.2, 0}, s.out));
+  algo::Recycled<Vec2> close_W;
+  s.in.close_W = &close_W;
+  close_W.push_back({0.365, 0});
+  EXPECT_TRUE(s.stage.proven(s.in, {0.2, 0}, s.out)) << "one return may be an outlier";
+  close_W.push_back({0.365, 0.005});
+  EXPECT_FALSE(s.stage.proven(s.in, {0.2, 0}, s.out));
+  EXPECT_TRUE(s.stage.proven(s.in, {0, 1}, s.out)) << "a disc that turns comes no nearer";
+  close_W.clear();
+  for (const double y : {0.0, 0.005}) close_W.push_back({-0.365, y});
+  EXPECT_TRUE(s.stage.proven(s.in, {0.2, 0}, s.out)) << "away from it";
+}
+
 /// At 40 mm/s an arc would need half a metre for this turn, and leave the strip meanwhile.
 TEST(VelocityStage, ASlowRobotTurnsAlongItsStripFirst) {
   Stage s;
