@@ -78,6 +78,8 @@ def check(entry, files, root, folder):
     if result.returncode == 0:
         return ""
     words = result.stdout + re.sub(r"(?m)^\d+ warnings?.* generated\.\n", "", result.stderr)
+    if not words.strip():
+        return f"{path}: clang-tidy ended with {result.returncode} without a word"
     return re.sub(re.escape(str(path)) + r":(\d+)", lambda found: origins[int(found[1]) - 1], words)
 
 
