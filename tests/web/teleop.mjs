@@ -84,7 +84,7 @@ test("by mouse: it drives while the stick is held, and stops when it is let go",
 
 test("by keys: blur lets go, and a held key does not go on by itself", { timeout: 120_000 }, async () => {
   const p = await seat();
-  await p.page.keyboard.down("w");
+  await hold_key(p, "w");
   await until("on its way", 10, session, (s) => s.command.v > 0.1);
   await p.page.evaluate(() => dispatchEvent(new Event("blur")));
   await until("at rest", 10, session, rests);
