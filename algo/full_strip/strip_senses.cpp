@@ -52,13 +52,13 @@ void StripSenses::update(const ControlInput& in, const HullCheck& hull, bool tra
 }
 
 void StripSenses::find_close(const LaserScan& scan, const ControlInput& in) {
+  const Vec2 here_W = in.odometry.pose.position();
   const double reach = in.spec->radius + kClose;
   close_W_.clear();
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (scan.status[i] != Beam::Ok || beam_end(scan, i) != BeamEnd::Surface) continue;
     const Vec2& end_W = points_.points_W()[i];
-    if ((end_W - in.odometry.pose.position()).squaredNorm() < reach * reach)
-      close_W_.push_back(end_W);
+    if (scan.status[i] != Beam::Ok || (end_W - here_W).squaredNorm() >= reach * reach) continue;
+    if (beam_end(scan, i) == BeamEnd::Surface) close_W_.push_back(end_W);
   }
 }
 
