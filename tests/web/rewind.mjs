@@ -121,16 +121,6 @@ test("the time of the live run is dragged back and says live again with one pres
 test("an earlier instant has its own world, and an edit returns to the live run", { timeout: 180_000 }, () =>
   with_page({ scenario: "case1", reads: true }, async (p, { base }) => {
     await control(base, "pause");
-    const added = await run_on(base, 100);
-    const { id } = await post(base, "/session/obstacles", cylinder(3, 2));
-    const removed = await run_on(base, 100);
-    await json(base, `/session/obstacles/${id}`, { method: "DELETE" });
-    await run_on(base, 60);
-    const seek = async (t) => {
-      await p.get("live-timeline").fill(String(Number(t.toFixed(2))));
-      await until(`the instant ${t}`, 5, () => time_of(p), (now) => near(now, t, 0.06));
-      await p.page.waitForTimeout(400);
-    };
     const pixel = async (x, y) => {
       const at = await p.pixels(x, y);
       const box = await p.get("scene").boundingBox();
@@ -140,8 +130,18 @@ test("an earlier instant has its own world, and an edit returns to the live run"
         return [...canvas.getContext("2d").getImageData(px * k, py * k, 1, 1).data].join();
       }, [at.x - box.x, at.y - box.y]);
     };
-    await p.draws((await json(base, "/session")).tick); // a page that lags still shows the obstacle
-    const bare = await pixel(3, 2);
+    const added = await run_on(base, 100);
+    await p.draws((await json(base, "/session")).tick);
+    const bare = await pixel(3, 2); // before: a page that lags shows a removed obstacle for a while
+    const { id } = await post(base, "/session/obstacles", cylinder(3, 2));
+    const removed = await run_on(base, 100);
+    await json(base, `/session/obstacles/${id}`, { method: "DELETE" });
+    await run_on(base, 60);
+    const seek = async (t) => {
+      await p.get("live-timeline").fill(String(Number(t.toFixed(2))));
+      await until(`the instant ${t}`, 5, () => time_of(p), (now) => near(now, t, 0.06));
+      await p.page.waitForTimeout(400);
+    };
     await seek((added + removed) / 2);
     // Edits of ticks that were passed over come with the record.
     await until("the obstacle stands at its time", 10, () => pixel(3, 2), (c) => c !== bare);
