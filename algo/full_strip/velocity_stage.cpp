@@ -9,31 +9,33 @@
 namespace algo {
 namespace {
 
-constexpr double kCreep = 0.35;        // [m/s] where the hull barely fits
-constexpr double kCreepRoom = 0.055;   // [m] room beside the hull there
-constexpr double kSpeedPerRoom = 3.0;  // [1/s] more speed per metre more
-constexpr double kSlowest = 0.25;      // [m/s]
-constexpr double kLateral = 2.0;       // [m/s2] in curves
-constexpr double kTurnShare = 0.8;     // of the turn rate that the profile assumes
-constexpr double kBrakeShare = 0.7;    // of the deceleration
-constexpr double kTurnOnSpot = 1.2;    // [rad] heading error above which the robot turns first
-constexpr double kTurnGain = 2.5;      // [1/s]
-constexpr double kFacing = 0.2;        // [rad] heading error with which a disc faces the strip
-constexpr double kArc = 0.1;           // [rad] heading error that an arc removes by itself,
-constexpr double kArcPerSpeed = 1.0;   // [rad per m/s] and more with speed
-constexpr std::array<double, 5> kShares{1, 0.75, 0.5, 0.3, 0.15};
-constexpr double kSlowShare = 0.4;     // of the speed: slower motions
-constexpr double kSlowMargin = 0.022;  // [m] need less room
-constexpr double kCloseAhead = 0.16;   // [m] ahead on the strip, their point to steer for
+constexpr double kCreep = 0.35;         // [m/s] where the hull barely fits
+constexpr double kCreepRoom = 0.055;    // [m] room beside the hull there
+constexpr double kSpeedPerRoom = 3.0;   // [1/s] more speed per metre more
+constexpr double kSlowest = 0.25;       // [m/s]
+constexpr double kLateral = 2.0;        // [m/s2] in curves
+constexpr double kTurnShare = 0.8;      // of the turn rate that the profile assumes
+constexpr double kBrakeShare = 0.7;     // of the deceleration
+constexpr double kTurnOnSpot = 1.2;     // [rad] heading error above which the robot turns first
+constexpr double kTurnGain = 2.5;       // [1/s]
+constexpr double kFacing = 0.2;         // [rad] heading error with which a disc faces the strip
+constexpr double kArc = 0.1;            // [rad] heading error that an arc removes by itself,
+constexpr double kArcPerSpeed = 1.0;    // [rad per m/s] and more with speed
+constexpr double kCloseMargin = 0.022;  // [m] a motion close to the strip needs less room
+constexpr double kCloseAhead = 0.16;    // [m] ahead on the strip, its point to steer for
 constexpr double kFloor = 0.02;  // [m] below it only an escape is tried; above a scanner's error
 constexpr double kStepSlack = 0.002;    // [m] a position may be this much nearer than the last
 constexpr double kClosest = 0.022;      // [m] from a return: the scanner may err by 15 mm
 constexpr double kReverseSpeed = 0.24;  // [m/s]
 
-/// [m] Distance ahead of the robot of the point it steers for, at speed `v` [m/s] and `share` of
-/// the strip's speed. A slow motion keeps close to the strip, and cuts no corner.
-double lookahead(double v, double share) {
-  if (share < kSlowShare) return kCloseAhead;
+/// The ways to follow the strip, the best first.
+constexpr std::array<VelocityStage::Pace, 6> kPaces{
+    {{1, false}, {0.75, false}, {0.5, false}, {0.75, true}, {0.3, true}, {0.15, true}}};
+
+/// [m] Distance ahead of the robot of the point it steers for, at speed `v` [m/s]. Close to the
+/// strip it cuts no corner.
+double lookahead(double v, bool close) {
+  if (close) return kCloseAhead;
   return std::clamp(0.3 + 0.4 * std::abs(v), 0.35, 1.0);
 }
 
@@ -108,17 +110,17 @@ double VelocityStage::speed_at(double s) const {
 Twist2 VelocityStage::pursue(const StageInput& in,
                              const MotionState& state,
                              double s,
-                             double share) const {
-  const double ahead = lookahead(state.twist.v, share);
+                             const Pace& pace) const {
+  const double ahead = lookahead(state.twist.v, pace.close);
   const Vec2 aim = to_child(state.pose_W, in.strip->at(s + ahead));
   const double length = aim.norm();
   if (length < 1e-6) return {};
   const double error = std::atan2(aim.y(), aim.x());
   const double w_max = in.limits.max_omega;
   if (std::abs(error) > kTurnOnSpot) {
-    return {0, share * std::clamp(kTurnGain * error, -w_max, w_max)};
+    return {0, pace.share * std::clamp(kTurnGain * error, -w_max, w_max)};
   }
-  double v = speed_at(s) * share;
+  double v = speed_at(s) * pace.share;
   const double curvature = 2 * aim.y() / (length * length);
   // A slow robot first turns by what its arc would take metres to turn.
   const double least = kTurnGain * (std::abs(error) - kArc - kArcPerSpeed * v);
@@ -131,7 +133,7 @@ Twist2 VelocityStage::pursue(const StageInput& in,
 }
 
 bool VelocityStage::admissible(const StageInput& in,
-                               double share,
+                               const Pace& pace,
                                Twist2& first,
                                Vec2& aim_W) const {
   MotionState state = in.state;
@@ -139,18 +141,18 @@ bool VelocityStage::admissible(const StageInput& in,
   // The robot's distance along the strip when its command begins to act.
   s += (state.pose_W.position() - in.strip->nodes()[0].position_W).norm();
   // Already too close: no step may lead closer until there is room again.
-  const double wanted = share < kSlowShare ? kSlowMargin : kMargin;
+  const double wanted = pace.close ? kCloseMargin : kMargin;
   double margin = std::min(wanted, hull_.clearance(*in.map, state.pose_W) - kStepSlack);
   if (margin < kFloor) return false;
   const int ticks = std::max(1, static_cast<int>(std::lround(kHorizon / in.dt)));
   CommandCourse course = in.course;
   for (int k = 0; k < ticks; ++k) {
-    Twist2 command = pursue(in, state, s, share);
+    Twist2 command = pursue(in, state, s, pace);
     if (command.v > 0) command = steadied(course, command, in.dt);
     course = followed(course, command, in.dt);
     if (k == 0) {
       first = command;
-      aim_W = in.strip->at(s + lookahead(state.twist.v, share));
+      aim_W = in.strip->at(s + lookahead(state.twist.v, pace.close));
     }
     const Vec2 before = state.pose_W.position();
     state = advanced(state, command, in.limits, in.dt);
@@ -169,17 +171,17 @@ bool VelocityStage::admissible(const StageInput& in,
 
 std::optional<Twist2> VelocityStage::follow(const StageInput& in, Weighing& out) {
   profile(in);
-  const auto attempt = [&](double share) -> std::optional<Twist2> {
+  const auto attempt = [&](const Pace& pace) -> std::optional<Twist2> {
     Twist2 first;
     Vec2 aim_W{0, 0};
-    const bool allowed = admissible(in, share, first, aim_W);
+    const bool allowed = admissible(in, pace, first, aim_W);
     out.candidates.push_back({first, kHorizon, allowed, allowed});
     if (!allowed) return std::nullopt;
     out.pass_W = aim_W;
     return first;
   };
-  for (const double share : kShares) {
-    if (const auto twist = attempt(share)) return twist;
+  for (const Pace& pace : kPaces) {
+    if (const auto twist = attempt(pace)) return twist;
   }
   return turned_in_place(in);
 }
@@ -187,7 +189,7 @@ std::optional<Twist2> VelocityStage::follow(const StageInput& in, Weighing& out)
 /// A disc at rest may turn towards the strip however close things are: its outline stays the same.
 std::optional<Twist2> VelocityStage::turned_in_place(const StageInput& in) const {
   if (!hull_.is_round() || in.state.twist.v != 0) return std::nullopt;
-  const Vec2 aim = to_child(in.state.pose_W, in.strip->at(lookahead(0, kShares[0])));
+  const Vec2 aim = to_child(in.state.pose_W, in.strip->at(lookahead(0, false)));
   const double error = std::atan2(aim.y(), aim.x());
   if (std::abs(error) < kFacing) return std::nullopt;
   const double w_max = in.limits.max_omega;

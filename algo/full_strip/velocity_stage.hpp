@@ -36,6 +36,13 @@ class VelocityStage {
   static constexpr double kMargin = 0.03;  // [m] the scanner's own error may be half of it
   static constexpr double kEscape = 0.6;   // [s]
 
+  /// A way to follow the strip: the share of its speed, and whether to stay close to it, which
+  /// needs less room.
+  struct Pace {
+    double share = 1;
+    bool close = false;
+  };
+
   void set_hull(const HullCheck& hull) { hull_ = hull; }
   const HullCheck& hull() const { return hull_; }
 
@@ -61,10 +68,10 @@ class VelocityStage {
   static constexpr std::size_t kProfile = 28;  // nodes of the speed profile: 4 m
   void profile(const StageInput& in);
   double speed_at(double s) const;
-  Twist2 pursue(const StageInput& in, const MotionState& state, double s, double share) const;
+  Twist2 pursue(const StageInput& in, const MotionState& state, double s, const Pace& pace) const;
   std::optional<Twist2> turned_in_place(const StageInput& in) const;
   bool nears_return(const StageInput& in, const Pose2& next_W) const;
-  bool admissible(const StageInput& in, double share, Twist2& first, Vec2& aim_W) const;
+  bool admissible(const StageInput& in, const Pace& pace, Twist2& first, Vec2& aim_W) const;
   bool holds(const StageInput& in, const Twist2& twist, double horizon, double& gain) const;
 
   HullCheck hull_{};
