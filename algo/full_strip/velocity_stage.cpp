@@ -18,7 +18,7 @@ constexpr double kTurnShare = 0.8;      // of the turn rate that the profile ass
 constexpr double kBrakeShare = 0.7;     // of the deceleration
 constexpr double kTurnOnSpot = 1.2;     // [rad] heading error above which the robot turns first
 constexpr double kTurnGain = 2.5;       // [1/s]
-constexpr double kFacing = 0.2;         // [rad] heading error with which a disc faces the strip
+constexpr double kFacing = 0.05;        // [rad] heading error with which a disc faces the strip
 constexpr double kArc = 0.1;            // [rad] heading error that an arc removes by itself,
 constexpr double kArcPerSpeed = 1.0;    // [rad per m/s] and more with speed
 constexpr double kCloseMargin = 0.022;  // [m] a motion close to the strip needs less room
@@ -187,9 +187,10 @@ std::optional<Twist2> VelocityStage::follow(const StageInput& in, Weighing& out)
 }
 
 /// A disc at rest may turn towards the strip however close things are: its outline stays the same.
+/// Beside a wall that it may not come nearer to, it first has to face the point of slow motions.
 std::optional<Twist2> VelocityStage::turned_in_place(const StageInput& in) const {
   if (!hull_.is_round() || in.state.twist.v != 0) return std::nullopt;
-  const Vec2 aim = to_child(in.state.pose_W, in.strip->at(lookahead(0, false)));
+  const Vec2 aim = to_child(in.state.pose_W, in.strip->at(kCloseAhead));
   const double error = std::atan2(aim.y(), aim.x());
   if (std::abs(error) < kFacing) return std::nullopt;
   const double w_max = in.limits.max_omega;

@@ -82,6 +82,27 @@ TEST(VelocityStage, DrivesNoNearerToAReturnThatIsAlmostTouched) {
   EXPECT_TRUE(s.stage.proven(s.in, {0.2, 0}, s.out)) << "away from it";
 }
 
+/// It once stood beside the wall for good: its strip led away from the wall by less than it turned
+/// for at rest.
+TEST(VelocityStage, TurnsOnTheSpotBesideAWallThatItMayNotComeNearerTo) {
+  Stage s;
+  algo::Recycled<Vec2> close_W;
+  for (const double x : {0.0, 0.005}) close_W.push_back({x, 0.371});
+  s.in.close_W = &close_W;
+  algo::Recycled<Vec2> path;
+  for (const Vec2& point : {Vec2(0, 0), Vec2(1, -0.1)}) path.push_back(point);
+  s.strip.lay(path);
+  s.in.state.pose_W.heading = 0.03;
+  const auto turn = s.stage.follow(s.in, s.out);
+  ASSERT_TRUE(turn);
+  EXPECT_EQ(turn->v, 0);
+  EXPECT_LT(turn->omega, 0);
+  s.in.state.pose_W.heading = -0.06;
+  const auto drive = s.stage.follow(s.in, s.out);
+  ASSERT_TRUE(drive);
+  EXPECT_GT(drive->v, 0);
+}
+
 /// At 40 mm/s an arc would need half a metre for this turn, and leave the strip meanwhile.
 TEST(VelocityStage, ASlowRobotTurnsAlongItsStripFirst) {
   Stage s;
