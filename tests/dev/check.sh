@@ -61,13 +61,14 @@ verb_fmt() {
 
 # Long drives and heavy loads, whose code shorter tests run as well. A sanitizer would make minutes of each.
 long_tests=(AppTest.ABatchOfTenThousand\* ArmInverse.EveryBranch\* ArmRun.APersonWho\* ArmRun.TheHandFollows\*
-  ArmStudy.\* BodyFollower.Passes\* BodyStrip.TheArmYields\* Buildings.HaveEveryKind\* BuildingStudy.RunsTheChosen\*
-  Compare.TheBlindOne\* CrowdCrossing.{TheSame,SomebodyWho}\* Determinism.SeveralRobots\*
-  FilterStudy.RepeatsExactly\* FleetRobot.{EachRobot,SoItDoes}\* GroundCourses.ARobotClimbs\*
-  GroundCourses.TenDegreesLeft\* GroundDrive.RefusesSteps\* LocateStudy.\* MapData.\*
+  ArmStudy.\* BodyFollower.Passes\* BodyStrip.TheArmYields\* BuildingStudy.RunsTheChosen\*
+  Buildings.{HaveEveryKind,ATimedDoor}\* Compare.TheBlindOne\* CrowdCrossing.{TheSame,SomebodyWho}\*
+  Determinism.SeveralRobots\* FilterStudy.RepeatsExactly\* FleetRobot.{EachRobot,SoItDoes,TheSameSpec}\*
+  GroundCourses.ARobotClimbs\* GroundCourses.TenDegrees\* GroundDrive.RefusesSteps\* LocateStudy.\* MapData.\*
   MasudaStudy.{BandsCanFail,DocumentsName,DownwardSlopes,HasTheLines,PrintedRules}\* Operator.IsTheSame\*
   PeopleRun.TheRobotCrosses\* Physics/RecordedSwap.\* ReachStudy.CountsEach\* RunListLoadTest.\*
-  RunQueueTest.WaitingWorlds\* SlopeStudy.TheGuardKeeps\* TightPlaces.\* Tour.AShortOne\* Turnover.BeginsWhere\*)
+  RunQueueTest.WaitingWorlds\* SlopeStudy.TheGuardKeeps\* TightPlaces.\* Tour.AShortOne\* TourStudy.HasARow\*
+  Turnover.BeginsWhere\*)
 
 # build_sanitized NAME: sets `targets`, the tests that run under the sanitizer NAME, and builds them. ThreadSanitizer
 # has only the rooms that start threads; the others would only take time.
