@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -51,6 +52,12 @@ double quantile(std::span<const double> sorted, double p) {
   const auto low = static_cast<std::size_t>(at);
   if (low + 1 >= sorted.size()) return sorted.back();
   return std::lerp(sorted[low], sorted[low + 1], at - static_cast<double>(low));
+}
+
+double quantile_of(std::vector<double> values, double p) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::ranges::sort(values);
+  return quantile(values, p);
 }
 
 std::optional<Summary> order_statistics(std::vector<double> values) {

@@ -22,6 +22,8 @@ constexpr std::uint64_t kBootstrapSeed = 1;  // the same values give the same in
 /// around (n - 1) p, counted from 0. Source: Hyndman and Fan 1996, definition 7; the default of R
 /// and of numpy.
 double quantile(std::span<const double> sorted, double p);
+/// The same of values in any order; NaN of none.
+double quantile_of(std::vector<double> values, double p);
 
 /// The values of one figure over runs.
 struct Summary {

@@ -5,18 +5,13 @@
 
 #include <fmt/format.h>
 
+#include "server/experiment/statistics.hpp"
+
 namespace server::barn {
 namespace {
 
 using algo::Outcome;
 using experiment::Contact;
-
-double quantile(std::vector<float> values, double share) {
-  if (values.empty()) return 0;
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return static_cast<double>(values[static_cast<std::size_t>(at)]);
-}
 
 Rates rates_of(const std::vector<Run>& runs, const std::string* difficulty) {
   Rates rates;
@@ -86,7 +81,7 @@ std::vector<Bin> by_difficulty(const Result& result) {
 Summary summarise(const Result& result) {
   Summary sum{.worlds = result.worlds, .rates = rates_of(result.runs, nullptr)};
   double times = 0;
-  std::vector<float> tick_us;
+  std::vector<double> tick_us;
   for (const Run& run : result.runs) {
     sum.avoidable += run.contact() == Contact::Avoidable ? 1U : 0U;
     sum.unavoidable += run.contact() == Contact::Unavoidable ? 1U : 0U;
@@ -100,8 +95,8 @@ Summary summarise(const Result& result) {
   sum.mean_time = sum.rates.success > 0 ? times / (sum.rates.success * runs) : 0;
   sum.score /= runs;
   sum.score_quarter /= runs;
-  sum.tick_us_p50 = quantile(tick_us, 0.5);
-  sum.tick_us_p99 = quantile(tick_us, 0.99);
+  sum.tick_us_p50 = experiment::quantile_of(tick_us, 0.5);
+  sum.tick_us_p99 = experiment::quantile_of(tick_us, 0.99);
   return sum;
 }
 

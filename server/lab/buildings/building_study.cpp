@@ -26,12 +26,6 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array<std::string_view, 6> kEndNames{
     "reached", "refused", "blocked", "silent", "collided", "out_of_time"};
 
-double quantile_of(std::vector<double> values, double p) {
-  if (values.empty()) return kNone;
-  std::ranges::sort(values);
-  return experiment::quantile(values, p);
-}
-
 using Choice = std::function<bool(const BuildingRun&)>;
 
 std::vector<const BuildingRun*> chosen(const std::vector<BuildingRun>& runs, const Choice& choice) {
@@ -167,8 +161,8 @@ BuildingFigures figures_of(const std::vector<const BuildingRun*>& runs) {
       sum.said += end == End::Refused ? 1U : 0U;
     }
   }
-  sum.ratio_median = quantile_of(ratios, 0.5);
-  sum.ratio_p95 = quantile_of(ratios, 0.95);
+  sum.ratio_median = experiment::quantile_of(ratios, 0.5);
+  sum.ratio_p95 = experiment::quantile_of(ratios, 0.95);
   return sum;
 }
 
@@ -256,7 +250,7 @@ TickTimes tick_times(const std::vector<BuildingRun>& runs) {
   for (const BuildingRun& run : runs) {
     all.insert(all.end(), run.row.tick_us.begin(), run.row.tick_us.end());
   }
-  return {quantile_of(all, 0.5), quantile_of(all, 0.99)};
+  return {experiment::quantile_of(all, 0.5), experiment::quantile_of(all, 0.99)};
 }
 
 nlohmann::json to_json(const std::vector<BuildingRun>& runs) {

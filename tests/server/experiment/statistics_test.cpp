@@ -3,6 +3,7 @@
 #include "server/experiment/statistics.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/server/experiment/statistics_golden.hpp"
 #include <gtest/gtest.h>
@@ -17,6 +18,12 @@ TEST(Statistics, QuantilesAreThoseOfNumpy) {
       EXPECT_TRUE(close(quantile(sorted, each.at("p")[i].get<double>()), each.at("q")[i]));
     }
   }
+}
+
+TEST(Statistics, AQuantileOfValuesInAnyOrderIsThatOfTheSorted) {
+  EXPECT_EQ(quantile_of({4, 1, 3, 2}, 0.5), 2.5);
+  EXPECT_EQ(quantile_of({4, 1, 3, 2}, 1), 4);
+  EXPECT_TRUE(std::isnan(quantile_of({}, 0.5)));
 }
 
 TEST(Statistics, TheIntervalOfAMeanIsThatOfScipyFromTheSameResamples) {
