@@ -24,12 +24,13 @@ struct StageInput {
 };
 
 /// Drives along the strip by pure pursuit. A command is admissible if the robot, following the
-/// strip for kHorizon and then braking to rest, keeps kMargin of room all the way and never backs
-/// into unseen space. The next tick then has an admissible command too: the rest of the same
-/// motion. The same must hold if the robot brakes after this one tick, as it does when the strip
-/// changes or a person presses Stop. Nor may it bring the hull nearer to a return of the newest
-/// scan that is almost within the scanner's error: a cell of the map keeps a mean, which cuts
-/// corners.
+/// strip for kHorizon and then braking to rest, keeps its margin of room all the way and never
+/// backs into unseen space. The margin is kMargin, and less for a motion that stays close to the
+/// strip or begins with less room. The next tick then has an admissible command too: the rest of
+/// the same motion. The same must hold if the robot brakes after this one tick, as it does when the
+/// strip changes or a person presses Stop. Nor may the command bring the hull nearer to a return of
+/// the newest scan that is almost within the scanner's error: a cell of the map keeps a mean, and
+/// means cut corners.
 class VelocityStage {
  public:
   static constexpr double kHorizon = 1.0;  // [s]
@@ -46,8 +47,9 @@ class VelocityStage {
   void set_hull(const HullCheck& hull) { hull_ = hull; }
   const HullCheck& hull() const { return hull_; }
 
-  /// The fastest admissible command along the strip; nothing if there is none. Records the
-  /// candidates and the pass point in `out`.
+  /// The first admissible command along the strip, in the order of the paces; else a turn on the
+  /// spot of a disc at rest; nothing if there is neither. Records the candidates and the pass point
+  /// in `out`.
   std::optional<Twist2> follow(const StageInput& in, Weighing& out);
 
   /// `wanted` if the robot can still brake to rest safely after one tick of it.
