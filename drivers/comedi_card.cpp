@@ -139,7 +139,7 @@ class ComediCard final : public AnalogCard {
     return out.empty() ? "nothing" : out;
   }
 
-  /// The subdevices of one of `types`.
+  /// The subdevices whose type is one of `types`.
   std::vector<unsigned> subdevices_of(std::initializer_list<int> types) const {
     std::vector<unsigned> out;
     const int count = library_.subdevices(device_.get());

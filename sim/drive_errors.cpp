@@ -1,4 +1,4 @@
-// sim/drive_errors.cpp: a ring of commands, and pose increments with scale errors and noise.
+// sim/drive_errors.cpp: delayed commands, and pose increments with scale errors, slip and noise.
 #include "sim/drive_errors.hpp"
 
 #include <array>

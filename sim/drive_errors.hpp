@@ -27,7 +27,7 @@ class DriveErrors {
   void reset(const algo::Pose2& start_W);
   /// Takes the `command` given in this tick and returns the twist that acts in it.
   algo::Twist2 act(const algo::Twist2& command);
-  /// Adds the drift to the `sound` odometry.
+  /// Adds the drift to the odometry `sound`, which has no errors.
   algo::Odometry report(const algo::Odometry& sound);
 
  private:

@@ -17,7 +17,7 @@ struct ArmFrames : std::array<Pose3, kArmJoints + 1> {
 };
 
 /// The product of A_i = Rz(theta_i) Tz(d_i) Tx(a_i) Rx(alpha_i) for joints `q` [rad], in the frame
-/// in which `shoulder` is frame 0. Frames behind the first `joints` joints are not computed.
+/// in which `shoulder` is frame 0. Frames beyond joint `joints` are not computed.
 /// Source: the sibling thesis' table of parameters, of which A_1 survives; docs/equations.md, "J.
 /// The arm".
 ArmFrames arm_frames(const ArmGeometry& geometry,
@@ -25,16 +25,18 @@ ArmFrames arm_frames(const ArmGeometry& geometry,
                      const Pose3& shoulder = Pose3::Identity(),
                      std::size_t joints = kArmJoints);
 
-/// Velocity [m/s] and turn rate [rad/s] in the frame of the frames, for joint rates [rad/s].
+/// Velocity [m/s] and turn rate [rad/s] of the hand, for joint rates [rad/s]; in the frame in which
+/// the ArmFrames are given.
 using ArmJacobian = Eigen::Matrix<double, 6, static_cast<int>(kArmJoints)>;
 
 /// Column i: (z_{i-1} x (p - p_{i-1}), z_{i-1}), with p the hand.
 ArmJacobian arm_jacobian(const ArmFrames& frames);
 
-/// Velocity [m/s] in the frame of the frames, for joint rates [rad/s].
+/// Velocity [m/s] of a point, for joint rates [rad/s]; in the frame in which the ArmFrames are
+/// given.
 using PointJacobian = Eigen::Matrix<double, 3, static_cast<int>(kArmJoints)>;
 
-/// Of a point `p` that is fixed to the link behind joint `joints`: later joints do not
+/// The Jacobian of a point `p` that is fixed to the link behind joint `joints`: later joints do not
 /// move it, so their columns are 0.
 PointJacobian arm_point_jacobian(const ArmFrames& frames, std::size_t joints, const Vec3& p);
 

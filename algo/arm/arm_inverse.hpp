@@ -28,8 +28,8 @@ ArmBranch branch_of(const ArmGeometry& geometry, const ArmJoints& q);
 std::optional<std::string> unreachable(const ArmGeometry& geometry, const Pose3& hand);
 
 /// The joints, each in (-pi, pi] [rad], with the hand at `hand` (in frame 0) and arm angle `psi`
-/// [rad]; they may lie beyond the limits. Where joints are not determined (a stretched arm), the
-/// one of `present` is kept. None when unreachable().
+/// [rad]; they may lie beyond the limits. A joint that the pose does not determine (in a stretched
+/// arm) keeps its angle of `present`. None when unreachable().
 /// Source: docs/equations.md, "The arm"; Eq. 22-25 of the sibling thesis.
 std::optional<ArmJoints> arm_inverse(const ArmGeometry& geometry,
                                      const Pose3& hand,

@@ -16,7 +16,7 @@ class NarrowPlace {
   void stop_driving() { drive_.reset(); }
 
   bool driving() const { return drive_.active(); }
-  /// True for a while after a search has begun, until it ends: the robot may wait for it.
+  /// True while a search runs, but only for a while after it began: the robot may wait for it.
   bool worth_waiting(double now) const;
 
   /// Searches, a portion each tick, for a way from `here_W` to a pose on the strip ahead that

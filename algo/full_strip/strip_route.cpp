@@ -229,7 +229,7 @@ void StripRoute::search_for_watch(const PlanWorld& world, const Vec2& here_W) {
   planner_.start(world, here_W, watch_->from_W, plan_options());
 }
 
-/// Makes the plan the strip if there is none, or if it is clearly better than the present one.
+/// Lays the strip along the plan if there is no strip, or if the new one is clearly better.
 void StripRoute::take_plan(const PlanWorld& world, const Vec2& here_W) {
   planner_.path(world, path_);
   if (aim_ == Aim::Goal && !path_.unsure) failures_ = 0;

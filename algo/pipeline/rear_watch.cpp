@@ -32,8 +32,8 @@ void RearWatch::reset() {
   looked_at_.fill(kNever);
 }
 
-/// Marks the sectors whose middle lies between `from` and `to` [rad from straight back], and those
-/// that contain these two.
+/// Marks the sectors whose middle lies between `from` and `to` [rad from straight back], and a
+/// sector that contains both.
 void RearWatch::look(double from, double to, double stamp) {
   constexpr double kWidth = 2 * kHalfField / static_cast<double>(kSectors);
   for (std::size_t k = 0; k < kSectors; ++k) {

@@ -11,7 +11,7 @@ namespace algo {
 /// Compares each scan with one taken a little earlier. Where the odometry holds, most beams end on
 /// the surfaces that the earlier scan shows; people in view change some. In a shove, or while the
 /// robot is carried, most beams end elsewhere. One such comparison is a shove if the wheels stand,
-/// two in a row if they turn: then the odometry itself is less exact.
+/// two in a row if they turn, since turning wheels make the odometry less exact.
 class ShoveWatch {
  public:
   ShoveWatch();
@@ -25,7 +25,7 @@ class ShoveWatch {
   void remember(const LaserScan& scan, const Pose2& sensor_W, const std::vector<Vec2>& points_W);
   double changed(const LaserScan& scan, const std::vector<Vec2>& points_W) const;
 
-  // The earlier scan, as seen from one place.
+  // The earlier scan, as if all its beams had been fired from one place.
   double stamp_ = 0;  // [s]
   Pose2 sensor_W_{};
   std::vector<double> ranges_{};  // [m] by bearing; 0: none. Empty before the first scan.

@@ -28,7 +28,7 @@ class Rows {
   algo::Outcome outcome(std::size_t run) const { return outcomes_[run]; }
   const std::string& reason(std::size_t run) const { return reasons_[run]; }
   bool broken(std::size_t run) const { return is(run, kBroken); }
-  /// It was under way when the program died, twice. It is broken too.
+  /// True if the program died twice while the run was under way. The run is broken too.
   bool killed_twice(std::size_t run) const { return is(run, kKilledTwice); }
   /// Coarse; empty unless Plan::keeps_track().
   const std::vector<algo::Vec2>& track_W(std::size_t run) const { return tracks_[run]; }

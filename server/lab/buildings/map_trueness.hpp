@@ -1,4 +1,4 @@
-// server/lab/buildings/map_trueness.hpp: how true to itself the map is that the strip remembers.
+// server/lab/buildings/map_trueness.hpp: how much of the strip's map is drawn twice.
 #pragma once
 
 #include <map>
@@ -20,7 +20,7 @@ class MapPieces {
  public:
   static constexpr double kPiece = 6.4;  // [m]
 
-  /// The robot believes to be at `believed_W` and is at `true_W`.
+  /// The robot believes that it is at `believed_W`, and is at `true_W`.
   void visit(const algo::Pose2& believed_W, const algo::Pose2& true_W);
   /// The pose of W in the true world, by the newest visit of the piece of `p_W`, or of the nearest
   /// piece that was visited. The identity without any visit.
