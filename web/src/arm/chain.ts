@@ -76,8 +76,8 @@ export function arm_angle(arm: ArmInfo, q: ArrayLike<number>): number | null {
   return Math.atan2(dot(off, cross(reference, axis)), dot(off, reference));
 }
 
-/** Why the arm alone does not bring its hand to a pose where the base stands, and whether no base could; null: the
- * distances are no obstacle. `wrist` and `shoulder` in W. */
+/** Why the arm cannot bring its hand to a pose from the present place of the base, and whether it could from no place;
+ * null: the distances permit it. `wrist` and `shoulder` in W. */
 export function reach_words(arm: ArmInfo, shoulder: Vec3, wrist: Vec3): { words: string; never: boolean } | null {
   const far = arm.upper_arm + Math.hypot(arm.elbow_offset, arm.forearm);
   const up = wrist[2] - shoulder[2];

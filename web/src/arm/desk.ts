@@ -19,7 +19,7 @@ const kFineStep = 0.01; // [m]
 const kTurn = radians(5);
 const kSendMs = 120;    // [ms] between two requests of one slider
 
-/** [m] to a centimetre, as hands are exact at best. */
+/** Rounds [m] to a centimetre: no hand is more exact. */
 const round_cm = (v: number) => Math.round(v * 100) / 100;
 export const rounded = (goal: HandGoalJson): HandGoalJson => ({ ...goal, x: round_cm(goal.x), y: round_cm(goal.y), z: round_cm(goal.z) });
 

@@ -1,5 +1,5 @@
-// web/src/draw/driven.ts: what a driver sees about the robot from above: the sectors that the laws hear, the followed
-// wall with its numbers, and where stick and robot lead to.
+// web/src/draw/driven.ts: what a driver sees about the robot from above: the sectors that the laws read, the followed
+// wall with its numbers, and where the stick and the robot's motion lead.
 import { ring_sectors, sector_arc, wall_of, wall_words, ways_ahead } from "../state/driven";
 import type { SceneState } from "../state/scene";
 import { kRing, kWall } from "../state/stick";

@@ -67,10 +67,11 @@ export function interval_words(rate: Rate | undefined): string {
   return rate.interval.map((bound) => fixed(100 * bound, 0)).join("–");
 }
 
-/** "44.6 [43.8–45.5]": median and the interval of the mean stand apart, so each has its word. */
+/** "44.6". The interval is the mean's, so mean_words() gives it. */
 export function median_words(figure: Figure | undefined, digits: number): string {
   return fixed(figure?.median ?? null, digits);
 }
+/** "mean 44.6 [43.8–45.5]"; empty without an interval. */
 export function mean_words(figure: Figure | undefined, digits: number): string {
   if (figure?.mean === undefined || !figure.mean_interval) return "";
   const [low, high] = figure.mean_interval;

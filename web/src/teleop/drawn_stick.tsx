@@ -14,7 +14,7 @@ const kLeast = 0.02; // of full force, that is drawn
 export interface StickProps {
   stick: Stick;
   force: { forward: number; left: number };
-  /** Where the laws hold it, of full stick: no speed above `room`, and the turn along a wall. */
+  /** The bounds that the laws set, in shares of full stick: no speed above `room`, and the turn along a wall. */
   room: number | null;
   wall_turn: number | null;
   /** Takes the stick as it is drawn, and null when it is let go. Null: nobody may hold it. */
