@@ -197,6 +197,7 @@ class Recorder {
   void look_at_file();
   void set_aside(std::string_view why);
   void recover();
+  void make_way();
   RecordStatus status_of(const RunChannel* live) const;
   void publish();
   std::string state_sentence(RecordKind kind, const RunChannel* live) const;

@@ -108,6 +108,7 @@ void Recorder::recover() {
     }
     if (!busy || !store_.is_open()) store_.open();
     store_.begin();
+    if (was.trouble == db::Trouble::Full) make_way();
     for (const auto& channel : channels_) resume(*channel);
     store_.commit();
   } catch (const db::DatabaseError& error) {
@@ -122,6 +123,22 @@ void Recorder::recover() {
   }
   if (!busy) report("The run store takes writes again: the record goes on.");
   publish();
+}
+
+/// A full store may lack the pages for the gaps of its runs. So the jobs that wait for a store that
+/// is well, deletions among them, come first.
+void Recorder::make_way() {
+  for (const Job& job : later_) {
+    try {
+      job(store_);
+    } catch (const db::DatabaseError&) {
+      throw;
+    } catch (const std::exception& error) {
+      report(error.what());
+    }
+  }
+  store_.commit();
+  later_.clear();
 }
 
 RunChannel* Recorder::live_channel() const {
