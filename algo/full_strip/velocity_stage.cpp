@@ -187,7 +187,8 @@ std::optional<Twist2> VelocityStage::follow(const StageInput& in, Weighing& out)
 }
 
 /// A disc at rest may turn towards the strip however close things are: its outline stays the same.
-/// Beside a wall that it may not come nearer to, it first has to face the point of slow motions.
+/// Beside a wall that it may not come nearer to, it first has to face the point that close motions
+/// steer for.
 std::optional<Twist2> VelocityStage::turned_in_place(const StageInput& in) const {
   if (!hull_.is_round() || in.state.twist.v != 0) return std::nullopt;
   const Vec2 aim = to_child(in.state.pose_W, in.strip->at(kCloseAhead));

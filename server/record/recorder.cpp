@@ -222,6 +222,25 @@ void Recorder::run_later() {
   if (!ailment_) later_.erase(later_.begin(), later_.begin() + static_cast<std::ptrdiff_t>(done));
 }
 
+/// A full store may lack the pages for the gaps of its runs. So a slice of the jobs that wait for a
+/// store that is well comes first, deletions among them. Throws DatabaseError; then all of the
+/// slice is done again.
+void Recorder::make_way() {
+  const auto until = Clock::now() + kLaterTime;
+  std::size_t done = 0;
+  for (; done < later_.size() && Clock::now() < until; ++done) {
+    try {
+      later_[done](store_);
+    } catch (const db::DatabaseError&) {
+      throw;
+    } catch (const std::exception& error) {
+      report(error.what());
+    }
+  }
+  store_.commit();
+  later_.erase(later_.begin(), later_.begin() + static_cast<std::ptrdiff_t>(done));
+}
+
 /// Writes the rows of live runs that began meanwhile, at once.
 void Recorder::take_arrivals() {
   std::vector<std::shared_ptr<RunChannel>> arrivals;

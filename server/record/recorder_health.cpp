@@ -125,22 +125,6 @@ void Recorder::recover() {
   publish();
 }
 
-/// A full store may lack the pages for the gaps of its runs. So the jobs that wait for a store that
-/// is well, deletions among them, come first.
-void Recorder::make_way() {
-  for (const Job& job : later_) {
-    try {
-      job(store_);
-    } catch (const db::DatabaseError&) {
-      throw;
-    } catch (const std::exception& error) {
-      report(error.what());
-    }
-  }
-  store_.commit();
-  later_.clear();
-}
-
 RunChannel* Recorder::live_channel() const {
   const auto live = std::find_if(channels_.rbegin(), channels_.rend(), [](const auto& channel) {
     return channel->keep() == Keep::NewestHour;
