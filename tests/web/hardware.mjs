@@ -37,7 +37,7 @@ test("emulated hardware: arm, drive, a silent scanner, the stop button, Stop", {
       await p.shot(`hardware-${name}-disarmed`);
       await within_reach(p, size);
 
-      await p.get("arm").click();
+      await arm(p, session);
       await words("armed", /may move/);
       await p.get("tool-goal").click();
       const at = await p.pixels(3, -1);
