@@ -101,7 +101,7 @@ void LoopCloser::search(std::size_t later, const Candidate& candidate, std::vect
   const Submap& earlier = submaps_[candidate.earlier];
   if (earlier.walls().empty() || submaps_[later].walls().empty()) return;
   const LoopSearch grid(earlier);
-  const std::vector<Vec2> points = submaps_[later].thinned(kSearchSpacing);
+  const std::vector<Vec2> points = submaps_[later].thinned(kSearchSpacing).points;
   std::vector<FoundPose> peaks;
   const std::size_t most = candidate.near() ? 1 : kMostPeaks;
   double least = kLeastScore;
@@ -121,27 +121,28 @@ void LoopCloser::search(std::size_t later, const Candidate& candidate, std::vect
 /// Aligns the walls of the two submaps, and compares what each saw.
 bool LoopCloser::verify(Loop& loop) {
   const Submap& earlier = submaps_[loop.earlier];
-  const std::vector<Vec2> points = submaps_[loop.later].thinned(kMatchSpacing);
-  matcher_.take(points);
+  const FacedPoints walls = submaps_[loop.later].thinned(kMatchSpacing);
+  matcher_.take(walls);
   const ScanMatch match = matcher_.match(earlier, loop.step, kLoopPrior);
   if ((match.pose_W.position() - loop.step.position()).norm() > kNearWindow) return false;
   loop.step = match.pose_W;
   std::size_t common = 0;
   std::size_t fits = 0;
   std::size_t contradicted = 0;
-  for (const Vec2& point : points) {
-    const Vec2 p = to_parent(loop.step, point);
-    if (earlier.wall_within(p, kOnWallWithin)) {
+  for (std::size_t i = 0; i < walls.points.size(); ++i) {
+    const Vec2 p = to_parent(loop.step, walls.points[i]);
+    const Facing facing = walls.facings[i].turned(loop.step.heading);
+    if (earlier.wall_within(p, facing, kOnWallWithin)) {
       ++fits;
       ++common;
-    } else if (earlier.wall_within(p, kNearWall)) {
+    } else if (earlier.wall_within(p, facing, kNearWall)) {
       ++common;
     } else if (earlier.is_free(p)) {
       ++contradicted;
       ++common;
     }
   }
-  const auto all = static_cast<double>(points.size());
+  const auto all = static_cast<double>(walls.points.size());
   const auto both = static_cast<double>(common);
   if (both < kLeastCommon * all) return false;
   loop.fit = static_cast<double>(fits) / both;

@@ -60,10 +60,11 @@ void OccupancyMap::face(Tally& tally, const Vec2& normal_W) {
   tally.normal_y = mean(tally.normal_y, normal_W.y());
 }
 
-bool OccupancyMap::Tally::faces(const Vec2& side_W) const {
+Facing OccupancyMap::Tally::facing() const {
   constexpr int kSure = kUnit / 2;  // a shorter mean is of both sides
-  const Vec2 normal(normal_x, normal_y);
-  return normal.squaredNorm() < kSure * kSure || normal.dot(side_W) > 0;
+  const Vec2 mean(normal_x, normal_y);
+  if (mean.squaredNorm() < kSure * kSure) return {};
+  return {mean.normalized(), false};
 }
 
 void OccupancyMap::mark_free(const Vec2& p_W) {
@@ -73,12 +74,16 @@ void OccupancyMap::mark_free(const Vec2& p_W) {
 
 void OccupancyMap::insert(const LaserScan& scan, const Pose2& sensor_W, double reach) {
   const Vec2 from_W = sensor_W.position();
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (scan.status[i] != Beam::Ok) continue;
-    const double range = std::min(scan.ranges[i], reach);
-    const Vec2 to_W = from_W + range * direction(sensor_W.heading + scan.angle(i));
-    pass(from_W, to_W);
-    if (scan.ranges[i] <= reach) hit(to_W);
+  FacedPoints seen_W;
+  seen_W.take(scan, sensor_W, std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < seen_W.points.size(); ++i) {
+    const Vec2 way = seen_W.points[i] - from_W;
+    const double range = way.norm();
+    if (range <= reach) {
+      insert(from_W, seen_W.points[i], seen_W.facings[i]);
+    } else {
+      pass(from_W, from_W + way * (reach / range));
+    }
   }
 }
 

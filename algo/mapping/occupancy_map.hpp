@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "algo/laser_scan.hpp"
+#include "algo/mapping/facing.hpp"
 #include "algo/types.hpp"
 
 namespace algo {
@@ -34,8 +35,8 @@ class OccupancyMap {
     /// things that left.
     bool occupied() const { return hits > 0 && 4 * hits >= passes; }
     static constexpr int kUnit = 100;
-    /// False if all hits came from the other side than `side_W` [m], of any length.
-    bool faces(const Vec2& side_W) const;
+    /// The mean of the facings of the hits; nothing if they came from both sides.
+    Facing facing() const;
   };
   /// Cell (i, j) spans [i edge, (i + 1) edge) x [j edge, (j + 1) edge) of W; likewise a tile.
   struct Index {
@@ -53,10 +54,10 @@ class OccupancyMap {
     pass(from_W, to_W);
     hit(to_W);
   }
-  /// Likewise, on a surface whose unit normal is `normal_W`.
-  void insert(const Vec2& from_W, const Vec2& to_W, const Vec2& normal_W) {
+  /// Likewise, on a surface that faces as `facing_W`.
+  void insert(const Vec2& from_W, const Vec2& to_W, const Facing& facing_W) {
     pass(from_W, to_W);
-    face(hit(to_W), normal_W);
+    face(hit(to_W), facing_W.side);
   }
 
   /// Makes the cell of `p_W` a wall, or free, as a map read from a file says.
@@ -91,6 +92,14 @@ class OccupancyMap {
         }
       }
     }
+  }
+
+  /// As each_near(), for the cells that may be of one surface with `facing_W`.
+  template <typename See>
+  void each_facing(const Vec2& p_W, const Facing& facing_W, double reach, See&& see) const {
+    each_tally_near(p_W, reach, [&](const Vec2& point_W, const Tally& tally) {
+      if (may_be_one(tally.facing(), facing_W)) see(point_W);
+    });
   }
 
   /// Calls `see(cell, tally)` for each cell of each tile, in the order of tiles().

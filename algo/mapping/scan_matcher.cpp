@@ -34,19 +34,26 @@ std::optional<Surface> SurfaceFit::line() const {
 }
 
 void ScanMatcher::take(const LaserScan& scan, double reach) {
-  points_R_.clear();
-  points_R_.reserve(scan.size());
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (scan.status[i] != Beam::Ok || scan.ranges[i] > reach) continue;
-    const Vec2 p_R = to_parent(scan.mount_R, scan.ranges[i] * direction(scan.angle(i)));
-    const bool apart =
-        points_R_.empty() || (p_R - points_R_.back()).squaredNorm() >= kSpacing * kSpacing;
-    if (apart) points_R_.push_back(p_R);
-  }
+  scan_R_.take(scan, scan.mount_R, reach);
+  take(scan_R_);
 }
 
 void ScanMatcher::take(std::span<const Vec2> points_R) {
   points_R_.assign(points_R.begin(), points_R.end());
+  facings_R_.clear();
+}
+
+void ScanMatcher::take(const FacedPoints& scan_R) {
+  points_R_.clear();
+  facings_R_.clear();
+  for (std::size_t i = 0; i < scan_R.points.size(); ++i) {
+    const Vec2& p_R = scan_R.points[i];
+    const bool apart =
+        points_R_.empty() || (p_R - points_R_.back()).squaredNorm() >= kSpacing * kSpacing;
+    if (!apart) continue;
+    points_R_.push_back(p_R);
+    facings_R_.push_back(scan_R.facings[i]);
+  }
 }
 
 Vec2 ScanMatcher::middle() const {

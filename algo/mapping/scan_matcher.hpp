@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "algo/laser_scan.hpp"
+#include "algo/mapping/facing.hpp"
 #include "algo/types.hpp"
 
 namespace algo {
@@ -57,13 +58,16 @@ struct ScanMatch {
 /// squares that shrink; rho is Geman and McClure's. Allocates only while scans grow. The same input
 /// gives the same pose bit for bit.
 ///
-/// A Map has `each_near(p_W, reach, see)`: LocalMap and OccupancyMap.
+/// A Map has `each_near(p_W, reach, see)`: LocalMap, OccupancyMap and Submap. If it knows how its
+/// walls face, it has `each_facing(p_W, facing_W, reach, see)` too.
 class ScanMatcher {
  public:
   /// Takes the scan to match: its Ok beams up to `reach` [m], thinned to kSpacing apart, so that
   /// near walls do not outweigh far ones.
   void take(const LaserScan& scan, double reach);
-  /// Takes points of R instead of a scan.
+  /// Takes points of R instead of a scan, and thins them likewise.
+  void take(const FacedPoints& points_R);
+  /// Takes points of R of which nobody knows how they face.
   void take(std::span<const Vec2> points_R);
   std::span<const Vec2> points() const { return points_R_; }
   /// Mean of the points taken, in R.
@@ -109,13 +113,21 @@ class ScanMatcher {
     std::size_t used_ = 0;
   };
 
+  /// The surface that point `i` of the scan, at `p_W`, may lie on.
   template <typename Map>
-  static std::optional<Surface> surface_near(const Map& map, const Vec2& p_W, double reach) {
+  std::optional<Surface> surface_near(
+      const Map& map, const Vec2& p_W, std::size_t i, double heading, double reach) const {
     SurfaceFit fit;
-    map.each_near(p_W, reach, [&](const Vec2& point_W) {
+    const auto see = [&](const Vec2& point_W) {
       const double near = 1 - (point_W - p_W).squaredNorm() / (reach * reach);
       if (near > 0) fit.add(point_W, near);
-    });
+    };
+    if constexpr (requires { map.each_facing(p_W, Facing{}, reach, see); }) {
+      const Facing facing_W = facings_R_.empty() ? Facing{} : facings_R_[i].turned(heading);
+      map.each_facing(p_W, facing_W, reach, see);
+    } else {
+      map.each_near(p_W, reach, see);
+    }
     return fit.line();
   }
 
@@ -123,7 +135,9 @@ class ScanMatcher {
   template <typename Map>
   std::size_t lying_on(const Map& map, const Pose2& pose_W) const;
 
+  FacedPoints scan_R_{};
   std::vector<Vec2> points_R_{};
+  std::vector<Facing> facings_R_{};  // of each point, or none
 };
 
 template <typename Map>
@@ -133,9 +147,10 @@ ScanMatch ScanMatcher::match(const Map& map, const Pose2& guess_W, const MatchPr
   for (const double reach : kReaches) {
     for (int k = 0; k < kIterations; ++k) {
       Step step(found.pose_W, guess_W, prior);
-      for (const Vec2& p_R : points_R_) {
-        const Vec2 p_W = to_parent(found.pose_W, p_R);
-        if (const auto surface = surface_near(map, p_W, reach)) step.add(p_W, *surface, reach / 3);
+      for (std::size_t i = 0; i < points_R_.size(); ++i) {
+        const Vec2 p_W = to_parent(found.pose_W, points_R_[i]);
+        const auto surface = surface_near(map, p_W, i, found.pose_W.heading, reach);
+        if (surface) step.add(p_W, *surface, reach / 3);
       }
       found.share = static_cast<double>(step.used()) / static_cast<double>(points_R_.size());
       if (step.used() < kFewest) return {.pose_W = guess_W, .share = found.share};

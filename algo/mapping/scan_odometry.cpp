@@ -1,6 +1,8 @@
 // algo/mapping/scan_odometry.cpp: match, then enter.
 #include "algo/mapping/scan_odometry.hpp"
 
+#include <utility>
+
 namespace algo {
 namespace {
 
@@ -11,9 +13,6 @@ constexpr double kOwnMapError = 0.03;       // [m]
 constexpr double kOwnMapTurnError = 0.006;  // [rad]
 constexpr double kAtStart = 0.01;           // [m] deviation of the place where the map begins
 constexpr double kTurnAtStart = 0.01;       // [rad]
-// The normal of a return is that of the chord between two others, one on each side.
-constexpr double kHalfChord = 0.1;   // [m] from it at least,
-constexpr double kChordReach = 0.3;  // [m] and at most
 
 /// The faces of a map's walls that can be seen from `from_W`.
 struct FacesSeen {
@@ -21,32 +20,16 @@ struct FacesSeen {
   Vec2 from_W;
   template <typename See>
   void each_near(const Vec2& p_W, double reach, See&& see) const {
-    const Vec2 side_W = from_W - p_W;
-    map.each_tally_near(p_W, reach, [&](const Vec2& point_W, const OccupancyMap::Tally& tally) {
-      if (tally.faces(side_W)) see(point_W);
-    });
+    map.each_facing(p_W, {from_W - p_W, false}, reach, std::forward<See>(see));
   }
 };
-
-/// The first point after `i`, or before it, that is kHalfChord from it; point `i` if none is
-/// within kChordReach.
-Vec2 chord_end(std::span<const Vec2> points_R, std::size_t i, bool ahead) {
-  const std::size_t count = ahead ? points_R.size() - i : i + 1;
-  for (std::size_t k = 1; k < count; ++k) {
-    const Vec2& p_R = points_R[ahead ? i + k : i - k];
-    const double far = (p_R - points_R[i]).norm();
-    if (far > kChordReach) break;
-    if (far >= kHalfChord) return p_R;
-  }
-  return points_R[i];
-}
 
 }  // namespace
 
 ScanOdometry::ScanOdometry(const MapperSettings& settings)
     : settings_(settings), map_(settings.cell), place_({}, kAtStart, kTurnAtStart) {
   thinned_R_.reserve(kUsualBeams);
-  normals_R_.reserve(kUsualBeams);
+  facings_R_.reserve(kUsualBeams);
 }
 
 void ScanOdometry::reset(const Pose2& start_W, const Pose2& odometry) {
@@ -82,26 +65,13 @@ void ScanOdometry::thin(std::span<const Vec2> points_R) {
   }
 }
 
-/// Towards the scanner.
-void ScanOdometry::find_normals(std::span<const Vec2> points_R, const Vec2& scanner_R) {
-  normals_R_.clear();
-  for (std::size_t i = 0; i < points_R.size(); ++i) {
-    const Vec2 chord = chord_end(points_R, i, true) - chord_end(points_R, i, false);
-    const Vec2 back = scanner_R - points_R[i];
-    const Vec2 across(-chord.y(), chord.x());
-    const Vec2 normal = chord.norm() > 0 ? across : back;
-    normals_R_.push_back((normal.dot(back) < 0 ? -1 : 1) * normal.normalized());
-  }
-}
-
 void ScanOdometry::enter(std::span<const Vec2> points_R, const Vec2& scanner_R) {
   const Pose2& pose_W = place_.pose_M();
   const Vec2 from_W = to_parent(pose_W, scanner_R);
-  const Pose2 turn{0, 0, pose_W.heading};
-  find_normals(points_R, scanner_R);
+  find_facings(points_R, scanner_R, facings_R_);
   for (std::size_t i = 0; i < points_R.size(); ++i) {
     if (points_R[i].norm() > settings_.reach) continue;
-    map_.insert(from_W, to_parent(pose_W, points_R[i]), to_parent(turn, normals_R_[i]));
+    map_.insert(from_W, to_parent(pose_W, points_R[i]), facings_R_[i].turned(pose_W.heading));
   }
   entered_W_ = pose_W;
 }

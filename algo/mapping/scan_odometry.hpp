@@ -45,7 +45,6 @@ class ScanOdometry {
   const OccupancyMap& map() const { return map_; }
 
  private:
-  void find_normals(std::span<const Vec2> points_R, const Vec2& scanner_R);
   void thin(std::span<const Vec2> points_R);
   void enter(std::span<const Vec2> points_R, const Vec2& scanner_R);
 
@@ -53,7 +52,7 @@ class ScanOdometry {
   OccupancyMap map_;
   ScanMatcher matcher_{};
   std::vector<Vec2> thinned_R_{};
-  std::vector<Vec2> normals_R_{};  // one per point of a scan that enters the map
+  std::vector<Facing> facings_R_{};  // one per point of a scan that enters the map
   PlaceFilter place_;
   Pose2 odometry_{};                  // at the newest scan
   std::optional<Pose2> entered_W_{};  // the pose of the last scan in the map

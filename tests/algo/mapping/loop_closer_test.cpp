@@ -2,6 +2,7 @@
 // look alike.
 #include "algo/mapping/loop_closer.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -118,6 +119,43 @@ TEST(LoopCloser, AKnownPlaceIsTakenAtOnce) {
   for (int k = 0; k < 4; ++k) tour.visit(k + 1, {10.0 * k, 0, 0}, kSure);
   EXPECT_TRUE(tour.visit(1, {0.1, 0.1, 0}, 0.1));
   EXPECT_LT(metres_off(tour.pose(4), {0, 0}), 0.03);
+}
+
+/// A corridor 20 m long with a niche every 2 m, of which a robot that drives along +x (`sense` 1)
+/// or -x (-1) sees the one side.
+Submap seen_corridor(double sense) {
+  OccupancyMap map(0.05);
+  const auto see = [&](const Vec2& p, const algo::Facing& facing) {
+    map.insert({p.x() - sense, 0}, p, facing);
+  };
+  for (const double wall : {-1.2, 1.2}) {
+    const Vec2 inwards(0, wall > 0 ? -1 : 1);
+    for (int k = -10; k < 10; k += 2) {
+      const double left = k;
+      const double side = sense > 0 ? left + 1 : left;  // of the niche, towards the robot
+      for (double t = 0; t < 1; t += 0.04) {
+        see({left + t, wall * 1.25}, {inwards, true});
+        see({left + 1 + t, wall}, {inwards, true});
+      }
+      for (double t = 1; t < 1.25; t += 0.04) see({side, wall * t}, {{-sense, 0}, true});
+    }
+  }
+  return Submap(map);
+}
+
+TEST(LoopCloser, OppositeSidesOfNichesDoNotHoldAPlaceAlongACorridor) {
+  const Submap there = seen_corridor(1);
+  const algo::FacedPoints back = seen_corridor(-1).thinned(0.1);
+  const Pose2 guess{0.95, 0, 0};  // one side of each niche lies where the other was
+  algo::ScanMatcher matcher;
+  const auto told_along = [&] {
+    const algo::ScanMatch match = matcher.match(there, guess, {0.1, 0.1});
+    return match.points(0, 0) / match.points(1, 1);
+  };
+  matcher.take(back.points);
+  EXPECT_GT(told_along(), 0.1);
+  matcher.take(back);
+  EXPECT_LT(told_along(), 0.02);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ TEST(LoopSearch, FindsAPoseMetresFromTheGuess) {
   const LoopSearch search(submap_from(kSubmapFrom));
   const Pose2 other_W{4.2, -0.3, 0.9};
   const Pose2 truth = algo::pose_step(kSubmapFrom, other_W);
-  const std::vector<Vec2> points = submap_from(other_W).thinned(0.3);
+  const std::vector<Vec2> points = submap_from(other_W).thinned(0.3).points;
   const auto found =
       search.best(points, {truth.x + 4, truth.y - 5, truth.heading + 0.3}, {6, 6, 0.4}, 0.4);
   ASSERT_TRUE(found);
@@ -37,7 +37,7 @@ TEST(LoopSearch, FindsAPoseMetresFromTheGuess) {
 
 TEST(LoopSearch, LeavesOutWhatIsKnownAndWhatScoresTooLittle) {
   const LoopSearch search(submap_from(kSubmapFrom));
-  const std::vector<Vec2> points = submap_from(kSubmapFrom).thinned(0.3);
+  const std::vector<Vec2> points = submap_from(kSubmapFrom).thinned(0.3).points;
   const auto first = search.best(points, {}, {3, 3, 0.2}, 0.4);
   ASSERT_TRUE(first);
   EXPECT_NEAR(first->pose.position().norm(), 0, 0.1);

@@ -7,6 +7,7 @@
 
 namespace {
 
+using algo::Facing;
 using algo::LaserScan;
 using algo::OccupancyMap;
 using algo::Vec2;
@@ -88,29 +89,43 @@ TEST(OccupancyMap, HasNoEdgeAndTakesMemoryWhereItSees) {
   EXPECT_LT(cells, 100U);
 }
 
+/// Whether a point that faces `side_W` finds the cell at (2.05, 0.05).
+bool faces(const OccupancyMap& map, const Vec2& side_W) {
+  bool met = false;
+  map.each_facing({2.05, 0.05}, {side_W.normalized()}, 0.02, [&](const Vec2&) { met = true; });
+  return met;
+}
+
 TEST(OccupancyMap, ACellFacesTheSideThatItWasSeenFrom) {
   OccupancyMap map(0.1);
-  map.insert({1, 0}, {2.05, 0.05}, {-1, 0});
-  EXPECT_TRUE(map.at({20, 0}).faces({-1, 0}));
-  EXPECT_TRUE(map.at({20, 0}).faces({-0.1, 3}));
-  EXPECT_FALSE(map.at({20, 0}).faces({1, 0}));
-  EXPECT_FALSE(map.at({20, 0}).faces({0.1, 3}));
+  map.insert({1, 0}, {2.05, 0.05}, Facing{{-1, 0}});
+  EXPECT_TRUE(faces(map, {-1, 0}));
+  EXPECT_TRUE(faces(map, {-0.1, 3}));
+  EXPECT_FALSE(faces(map, {1, 0}));
+  EXPECT_FALSE(faces(map, {0.1, 3}));
 }
 
 TEST(OccupancyMap, ACellSeenFromBothSidesFacesBoth) {
   OccupancyMap map(0.1);
   for (int k = 0; k < 20; ++k) {
-    map.insert({1, 0}, {2.05, 0.05}, {-1, 0});
-    map.insert({3, 0}, {2.05, 0.05}, {1, 0});
+    map.insert({1, 0}, {2.05, 0.05}, Facing{{-1, 0}});
+    map.insert({3, 0}, {2.05, 0.05}, Facing{{1, 0}});
   }
-  EXPECT_TRUE(map.at({20, 0}).faces({-1, 0}));
-  EXPECT_TRUE(map.at({20, 0}).faces({1, 0}));
+  EXPECT_TRUE(faces(map, {-1, 0}));
+  EXPECT_TRUE(faces(map, {1, 0}));
 }
 
 TEST(OccupancyMap, ACellWithoutANormalFacesAllSides) {
   OccupancyMap map(0.1);
   map.insert({1, 0}, {2.05, 0.05});
-  EXPECT_TRUE(map.at({20, 0}).faces({1, 0}));
+  EXPECT_TRUE(faces(map, {1, 0}));
+}
+
+TEST(OccupancyMap, AScanTellsHowItsWallsFace) {
+  OccupancyMap map(0.1);
+  map.insert(beam(2.05), {0, 0.05, 0}, 8);
+  EXPECT_TRUE(faces(map, {-1, 0}));
+  EXPECT_FALSE(faces(map, {1, 0}));
 }
 
 }  // namespace
