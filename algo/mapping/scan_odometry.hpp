@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "algo/mapping/map_localizer.hpp"
 #include "algo/mapping/mapper_settings.hpp"
@@ -21,8 +20,8 @@ namespace algo {
 /// scanner's sight, is remembered in that frame. Unlike GraphMapper it closes no loops, and the
 /// drift of one way round a loop must stay below the reach of the matcher, 0.5 m.
 ///
-/// A scan is matched only to the faces of walls that its scanner can see. With both faces of a thin
-/// wall in the map, the line through all points lies between them, or there is no line.
+/// A scan is matched only to walls that face as its points do. With both faces of a thin wall in
+/// the map, the line through all points lies between them, or there is no line.
 ///
 /// Memory grows with the area seen and not with the way driven. The same input gives the same poses
 /// bit for bit.
@@ -45,14 +44,13 @@ class ScanOdometry {
   const OccupancyMap& map() const { return map_; }
 
  private:
-  void thin(std::span<const Vec2> points_R);
-  void enter(std::span<const Vec2> points_R, const Vec2& scanner_R);
+  void keep_near(std::span<const Vec2> points_R);
+  void enter(const Vec2& scanner_R);
 
   MapperSettings settings_{};
   OccupancyMap map_;
   ScanMatcher matcher_{};
-  std::vector<Vec2> thinned_R_{};
-  std::vector<Facing> facings_R_{};  // one per point of a scan that enters the map
+  FacedPoints scan_R_{};
   PlaceFilter place_;
   Pose2 odometry_{};                  // at the newest scan
   std::optional<Pose2> entered_W_{};  // the pose of the last scan in the map
