@@ -54,8 +54,16 @@ class DistanceField {
   /// Rebuilds the tiles that have waited longest. A cell is occupied if it has at least `occupied`
   /// `hits`.
   void rebuild(std::span<const std::uint8_t> hits, std::uint8_t occupied);
-  /// Moves the window by whole tiles. New cells are farther than kReach from any obstacle.
+  /// Moves the window by whole tiles. New cells are farther than kReach from any obstacle, until
+  /// the occupied cells for which beside_new() holds are entered again.
   void shift(int tile_columns, int tile_rows);
+  /// Whether a cell of the window that has moved so is near enough to new cells to lower them.
+  static bool beside_new(int column, int row, int tile_columns, int tile_rows) {
+    const auto beside = [](int at, int moved) {
+      return moved > 0 ? at >= kSize - moved - kRadius : moved < 0 && at < kRadius - moved;
+    };
+    return beside(column, tile_columns * kTile) || beside(row, tile_rows * kTile);
+  }
 
   /// [mm] The distance of a cell inside the window.
   std::int16_t at(int column, int row) const { return field_[index(column, row)]; }

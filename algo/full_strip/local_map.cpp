@@ -96,6 +96,11 @@ void LocalMap::shift(int tile_columns, int tile_rows, BuildingMemory* memory) {
     seen_[moved.cell] = moved.seen;
     means_[moved.cell] = moved.mean;
     hits_[moved.cell] = moved.hits;
+    const int column = static_cast<int>(moved.cell) % kSize;
+    const int row = static_cast<int>(moved.cell) / kSize;
+    const bool lowers = field_ && moved.hits >= kOccupied &&
+                        DistanceField::beside_new(column, row, tile_columns, tile_rows);
+    if (lowers) field_->occupy(column, row);
   }
   if (memory != nullptr) restore_entering(tile_columns, tile_rows, *memory);
 }

@@ -109,6 +109,16 @@ TEST(LocalMap, AMovedWindowKeepsItsContents) {
   EXPECT_EQ(occupied(map), 0U);
 }
 
+TEST(LocalMap, WhatEntersTheWindowHasItsDistanceToWhatStays) {
+  LocalMap map;
+  see(map, post(0, 0, 0.3), {2, 0, std::numbers::pi}, 3);
+  map.follow({12.4, 0});  // the window begins at x = 0, and the side seen of the post is inside
+  ASSERT_GT(occupied(map), 5U);
+  map.follow({0, 0});
+  EXPECT_NEAR(map.distance({0.7, 0}), 0.4, 0.05);
+  EXPECT_NEAR(map.distance({-0.3, 0}), 0.5, 0.1);  // on the side that had left the window
+}
+
 TEST(LocalMap, TheDistancesDoNotDependOnTheOrderOfEvents) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> place(-3, 3);
