@@ -18,9 +18,9 @@ namespace {
 
 using algo::Outcome;
 
-constexpr double kLeastLimit = 120;    // [s] of a run with a way to its goal,
-constexpr double kMostRatio = 6;       // or so many times the oracle's time
-constexpr double kWithoutLimit = 900;  // [s] of a run without a way
+constexpr double kLeastLimit = 120;     // [s] of a run with a way to its goal,
+constexpr double kMostRatio = 6;        // or so many times the oracle's time
+constexpr double kWithoutLimit = 2400;  // [s] of a run without a way: 1.2 km of lanes
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 constexpr std::array<std::string_view, 6> kEndNames{
