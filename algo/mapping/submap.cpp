@@ -109,9 +109,7 @@ bool Submap::is_free(const Vec2& p) const {
 }
 
 bool Submap::wall_within(const Vec2& p, double reach) const {
-  bool met = false;
-  each_near(p, reach, [&](const Vec2&) { met = true; });
-  return met;
+  return wall_within(p, Facing{}, reach);
 }
 
 bool Submap::wall_within(const Vec2& p, const Facing& facing, double reach) const {
