@@ -175,10 +175,13 @@ class Server(load.Server):
         return time.monotonic() - self.started
 
     def arm(self):
-        self.wait_for("ready to be armed",
-                      lambda _: "refused" not in self.answer("POST", "/session/control",
-                                                             {"action": "arm"}))
-        self.wait_for("motors on", lambda s: (s.get("hardware") or {}).get("halt") == "none")
+        """Asks again where a moment of a busy machine refused it or disarmed the robot."""
+        def motors_on(session):
+            hardware = session.get("hardware") or {}
+            if not hardware.get("armed"):
+                self.answer("POST", "/session/control", {"action": "arm"})
+            return hardware.get("halt") == "none"
+        self.wait_for("motors on", motors_on)
 
     def drive(self):
         """Waits until the robot has driven 0.1 m of 5, with signs of life meanwhile."""
