@@ -65,8 +65,7 @@ void BuildingMemory::look(const LaserScan& scan, const Pose2& sensor_W) {
     const int steps = static_cast<int>(length / kCoarse);
     Tile* tile = nullptr;
     for (int k = 0; k <= steps; ++k) {
-      const Cell c{static_cast<int>(std::floor(from.x() + k * way.x())),
-                   static_cast<int>(std::floor(from.y() + k * way.y()))};
+      const Cell c{whole_below(from.x() + k * way.x()), whole_below(from.y() + k * way.y())};
       const int column = tile_of(c.column);
       const int row = tile_of(c.row);
       if (tile == nullptr || tile->column != column || tile->row != row) tile = &get(column, row);

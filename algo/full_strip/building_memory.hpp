@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -93,8 +92,7 @@ class BuildingMemory {
            static_cast<std::size_t>(c.column & (kCoarseSide - 1));
   }
   static Cell cell_of(const Vec2& p_W) {
-    return {static_cast<int>(std::floor(p_W.x() / kCoarse)),
-            static_cast<int>(std::floor(p_W.y() / kCoarse))};
+    return {whole_below(p_W.x() / kCoarse), whole_below(p_W.y() / kCoarse)};
   }
   static Vec2 middle_W(Cell c) { return kCoarse * Vec2(c.column + 0.5, c.row + 0.5); }
 

@@ -12,10 +12,10 @@
 namespace algo {
 namespace {
 
-constexpr std::uint8_t kHit = 2;         // added by a hit, up to kMost
+constexpr std::uint8_t kPerHit = 2;      // added by a hit, up to kMost
 constexpr std::uint8_t kSure = 6;        // hits from which a cell is not doubted
-constexpr int kLook = 2;                 // removed when a beam passes
-constexpr double kBeyond = 0.15;         // [m] a beam must go on this far behind a cell to clear it
+constexpr int kPerLook = 2;              // removed when a beam passes
+constexpr double kBehindCell = 0.15;     // [m] a beam must go on this far behind a cell to clear it
 constexpr double kClearRange = 8.0;      // [m] cells farther than this are left unchanged
 constexpr std::uint32_t kAgeEvery = 64;  // scans between two checks of the cells' ages
 constexpr double kFaded = 0.15;          // [m] around a faded cell: its obstacle may still be there
@@ -132,13 +132,13 @@ void LocalMap::hit(const Vec2& point_W) {
   const std::size_t cell = index(column, row);
   const std::uint8_t before = hits_[cell];
   if (before == 0) active_.push_back(static_cast<std::uint32_t>(cell));
-  hits_[cell] = std::min<std::uint8_t>(kMost, before + kHit);
+  hits_[cell] = std::min<std::uint8_t>(kMost, before + kPerHit);
   seen_[cell] = now();
   // A mean that forgets, so that it follows drift.
   const Vec2 off = point_W - centre_W(cell);
   Offset& mean = means_[cell];
   if (before == 0) mean = {};
-  const float share = before == 0 ? 1.0F : 1.0F / static_cast<float>(before + kHit);
+  const float share = before == 0 ? 1.0F : 1.0F / static_cast<float>(before + kPerHit);
   mean[0] += share * (static_cast<float>(off.x()) - mean[0]);
   mean[1] += share * (static_cast<float>(off.y()) - mean[1]);
   if (hits_[cell] < kOccupied) suspects_.push_back(static_cast<std::uint32_t>(cell));
@@ -160,9 +160,10 @@ bool LocalMap::weaken(std::size_t cell, int by) {
 /// Scanners that look ahead and back alternate their scans, so each has its own counter; with a
 /// shared one each would only ever check one half of the cells.
 void LocalMap::look_through(const LaserScan& scan, const Pose2& sensor_W) {
-  if (scan.size() < 3) return;
+  if (scan.size() < 3 || !(scan.angle_increment > 0)) return;
   const Vec2 ahead = direction(sensor_W.heading);
   const double per_radian = 1 / scan.angle_increment;
+  const double doubt = kRoughBearing * per_radian;  // [beams] nearer to a limit it asks exactly
   const auto last = static_cast<double>(scan.size() - 2);
   const bool back = std::abs(scan.mount_R.heading) > std::numbers::pi / 2;
   for (std::size_t i = ++looks_[back ? 1 : 0] % 2; i < active_.size(); i += 2) {
@@ -170,8 +171,13 @@ void LocalMap::look_through(const LaserScan& scan, const Pose2& sensor_W) {
     const Vec2 d = centre_W(cell) - sensor_W.position();
     const double far = d.squaredNorm();
     if (far > kClearRange * kClearRange) continue;
-    const double bearing = std::atan2(cross(ahead, d), ahead.dot(d)) - scan.angle_min;
-    const double beam = bearing * per_radian + 0.5;
+    const double left = cross(ahead, d);
+    const double along = ahead.dot(d);
+    double beam = (rough_bearing(left, along) - scan.angle_min) * per_radian + 0.5;
+    const double part = beam - std::floor(beam);
+    if (part < doubt || part + doubt >= 1) {
+      beam = (std::atan2(left, along) - scan.angle_min) * per_radian + 0.5;
+    }
     if (!(beam >= 1 && beam < last)) continue;
     const auto b = static_cast<std::size_t>(beam);
     double nearest = scan.range_max;
@@ -180,9 +186,9 @@ void LocalMap::look_through(const LaserScan& scan, const Pose2& sensor_W) {
       measured = measured && scan.status[k] != Beam::Invalid;
       if (scan.status[k] == Beam::Ok) nearest = std::min(nearest, scan.ranges[k]);
     }
-    const double reach = nearest - kBeyond;
+    const double reach = nearest - kBehindCell;
     if (!measured || reach <= 0 || reach * reach < far) continue;
-    if (!weaken(cell, kLook)) drop_active(i);
+    if (!weaken(cell, kPerLook)) drop_active(i);
   }
 }
 

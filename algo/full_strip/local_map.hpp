@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
@@ -121,7 +120,7 @@ class LocalMap {
   /// Calls `visit(cell)` for each cell of the square of half edge `reach` [m] about `p_W`.
   template <typename Visit>
   void each_cell(const Vec2& p_W, double reach, Visit&& visit) const {
-    const auto place = [](double metres) { return static_cast<int>(std::floor(metres / kCell)); };
+    const auto place = [](double metres) { return whole_below(metres / kCell); };
     const Vec2 low = p_W - Vec2(reach, reach);
     const Vec2 high = p_W + Vec2(reach, reach);
     const int x0 = std::max(0, place(low.x() - corner_W_.x()));

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <new>
 
 #include "algo/full_strip/roomiest.hpp"
@@ -83,8 +82,8 @@ Planner::Cell Planner::cell_of(Id coarse) const {
 Planner::Id Planner::id_at(const Vec2& p_W) const {
   const Vec2 p = (p_W - corner_W_) / kStep;
   const double most = kFine * 100.0;
-  const int column = static_cast<int>(std::floor(std::clamp(p.x(), -most, most)));
-  const int row = static_cast<int>(std::floor(std::clamp(p.y(), -most, most)));
+  const int column = whole_below(std::clamp(p.x(), -most, most));
+  const int row = whole_below(std::clamp(p.y(), -most, most));
   return is_inner(column, row) ? fine_id(column, row) : coarse_id(BuildingMemory::cell_of(p_W));
 }
 

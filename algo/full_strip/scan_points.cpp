@@ -15,9 +15,15 @@ struct Frame {
   Vec2 ahead{1, 0};
   Vec2 left{0, 1};
 };
-Frame frame_of(const Pose2& pose) {
-  const Vec2 ahead = direction(pose.heading);
-  return {pose.position(), ahead, {-ahead.y(), ahead.x()}};
+/// The frame of a scanner at `mount_R` on a robot at `robot_W`. Most scanners look straight ahead,
+/// so that both headings have the same sine.
+Frame frame_of(const Pose2& robot_W, const Pose2& mount_R) {
+  const Vec2 robot_ahead = direction(robot_W.heading);
+  const Vec2 robot_left(-robot_ahead.y(), robot_ahead.x());
+  const Vec2 origin = robot_W.position() + mount_R.x * robot_ahead + mount_R.y * robot_left;
+  const double heading = wrap_angle(robot_W.heading + mount_R.heading);
+  const Vec2 ahead = heading == robot_W.heading ? robot_ahead : direction(heading);
+  return {origin, ahead, {-ahead.y(), ahead.x()}};
 }
 
 }  // namespace
@@ -48,14 +54,14 @@ Pose2 ScanPoints::map(const LaserScan& scan) {
   points_W_.resize(scan.size());
   const std::vector<Vec2>& beams = beams_.of(scan);
   const bool rolling = scan.turn_period > 0;
-  const Pose2 sensor_W = compose(pose_at(scan.stamp - scan.sweep_time() / 2), scan.mount_R);
-  Frame at = frame_of(sensor_W);
+  const Pose2 middle_W = pose_at(scan.stamp - scan.sweep_time() / 2);
+  Frame at = frame_of(middle_W, scan.mount_R);
   for (std::size_t i = 0; i < scan.size(); ++i) {
     if (scan.status[i] != Beam::Ok) continue;
-    if (rolling) at = frame_of(compose(pose_at(scan.beam_time(i)), scan.mount_R));
+    if (rolling) at = frame_of(pose_at(scan.beam_time(i)), scan.mount_R);
     points_W_[i] = at.origin + scan.ranges[i] * (at.ahead * beams[i].x() + at.left * beams[i].y());
   }
-  return sensor_W;
+  return compose(middle_W, scan.mount_R);
 }
 
 }  // namespace algo

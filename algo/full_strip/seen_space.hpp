@@ -2,7 +2,6 @@
 // back only into seen space.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -41,7 +40,7 @@ class SeenSpace {
   }
 
  private:
-  static int cell_of(double metres) { return static_cast<int>(std::floor(metres / kCell)); }
+  static int cell_of(double metres) { return whole_below(metres / kCell); }
   /// Cells of the plane map to those of the window periodically, as on a torus.
   static std::size_t index(int column, int row) {
     constexpr auto kMask = static_cast<unsigned>(kSize - 1);
