@@ -5,6 +5,7 @@
 #include <new>
 
 #include "algo/full_strip/mixed_beam.hpp"
+#include "algo/wide.hpp"
 
 namespace algo {
 namespace {
@@ -13,7 +14,14 @@ constexpr std::uint8_t kDoubtHere = 8;    // raised by a mixed beam where it end
 constexpr std::uint8_t kDoubtBeside = 4;  // and in the cells around: such ends lie far apart
 constexpr std::uint8_t kMostDoubts = 40;
 constexpr int kNearSteps = static_cast<int>(BuildingMemory::kNear / BuildingMemory::kCoarse);
+constexpr int kMostSteps = static_cast<int>(BuildingMemory::kLook / BuildingMemory::kCoarse);
 constexpr std::size_t kTileCount = std::size_t{BuildingMemory::kTiles} * BuildingMemory::kTiles;
+
+/// The places [cells] along one axis of a beam's steps 0 to `steps`, each of length `way`.
+using Places = std::array<int, std::size_t{kMostSteps} + 1>;
+TAUTLINE_WIDE void find_places(double from, double way, int steps, Places& out) {
+  for (int k = 0; k <= steps; ++k) out[static_cast<std::size_t>(k)] = whole_below(from + k * way);
+}
 
 }  // namespace
 
@@ -57,6 +65,8 @@ void BuildingMemory::look(const LaserScan& scan, const Pose2& sensor_W) {
   const double apart = kCoarse / (kLook * scan.angle_increment);
   const auto stride = static_cast<std::size_t>(std::clamp(apart, 1.0, 64.0));
   const Vec2 from = sensor_W.position() / kCoarse;
+  Places columns;
+  Places rows;
   for (std::size_t i = ++looks_ % stride; i < scan.size(); i += stride) {
     if (scan.status[i] == Beam::Invalid) continue;
     const bool ends = scan.status[i] == Beam::Ok;
@@ -64,16 +74,21 @@ void BuildingMemory::look(const LaserScan& scan, const Pose2& sensor_W) {
     const Vec2 way = direction(sensor_W.heading + scan.angle(i));
     const int steps = static_cast<int>(length / kCoarse);
     Tile* tile = nullptr;
+    int column = 0;
+    int row = 0;
+    find_places(from.x(), way.x(), steps, columns);
+    find_places(from.y(), way.y(), steps, rows);
     for (int k = 0; k <= steps; ++k) {
-      const Cell c{whole_below(from.x() + k * way.x()), whole_below(from.y() + k * way.y())};
-      const int column = tile_of(c.column);
-      const int row = tile_of(c.row);
-      if (tile == nullptr || tile->column != column || tile->row != row) tile = &get(column, row);
-      std::uint8_t& crossings = tile->seen[within(c)];
-      if (crossings < kMostCrossings) ++crossings;
-      std::uint8_t& doubts = tile->doubts[within(c)];
-      if (doubts > 0) --doubts;
-      if (k < kNearSteps) tile->near |= std::uint64_t{1} << within(c);
+      const Cell c{columns[static_cast<std::size_t>(k)], rows[static_cast<std::size_t>(k)]};
+      if (tile == nullptr || tile_of(c.column) != column || tile_of(c.row) != row) {
+        column = tile_of(c.column);
+        row = tile_of(c.row);
+        tile = &get(column, row);
+      }
+      const std::size_t cell = within(c);
+      if (tile->seen[cell] < kMostCrossings) ++tile->seen[cell];
+      if (tile->doubts[cell] > 0) --tile->doubts[cell];
+      if (k < kNearSteps) tile->near |= std::uint64_t{1} << cell;
     }
     if (ends && scan.ranges[i] < kNear) {
       const Cell c = cell_of(sensor_W.position() + scan.ranges[i] * way);

@@ -5,12 +5,57 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algo/wide.hpp"
+
 namespace algo {
 namespace {
 
 constexpr auto kFar = static_cast<std::int16_t>(DistanceField::kReach * 1000);  // [mm]
-constexpr std::size_t kTilesATick = 8;
 constexpr std::int16_t kNoSquare = 10'000;  // square of a distance beyond kReach
+
+/// Lets the gaps of a row's columns grow by a cell, up to `most`; an occupied cell closes its own.
+TAUTLINE_WIDE void grow_gaps(const std::uint8_t* hits,
+                             std::uint8_t occupied,
+                             std::uint8_t most,
+                             std::size_t columns,
+                             std::uint8_t* __restrict gaps) {
+  for (std::size_t x = 0; x < columns; ++x) {
+    const auto more = static_cast<std::uint8_t>(gaps[x] + 1);
+    gaps[x] = hits[x] >= occupied ? std::uint8_t{0} : std::min(more, most);
+  }
+}
+
+/// Squares of gaps; kNoSquare for those beyond `radius`. False if all are.
+TAUTLINE_WIDE bool square_gaps(const std::uint8_t* gaps,
+                               std::uint8_t radius,
+                               std::size_t count,
+                               std::int16_t* __restrict squares) {
+  for (std::size_t x = 0; x < count; ++x) {
+    const std::int16_t gap = gaps[x];
+    const auto square = static_cast<std::int16_t>(gap * gap);
+    squares[x] = gap > radius ? kNoSquare : square;
+  }
+  std::int16_t least = kNoSquare;
+  for (std::size_t x = 0; x < count; ++x) least = std::min(least, squares[x]);
+  return least < kNoSquare;
+}
+
+/// The least square of the distances from each cell of a tile's row to the occupied cells in the
+/// columns up to `radius` aside. `squares` has those of the columns, the first one `radius` before
+/// the first cell.
+TAUTLINE_WIDE void least_squares(const std::int16_t* squares,
+                                 int radius,
+                                 std::array<std::int16_t, DistanceField::kTile>& out) {
+  std::array<std::int16_t, DistanceField::kTile> best;
+  best.fill(kNoSquare);
+  for (int aside = -radius; aside <= radius; ++aside, ++squares) {
+    const auto more = static_cast<std::int16_t>(aside * aside);
+    for (std::size_t x = 0; x < best.size(); ++x) {
+      best[x] = std::min(best[x], static_cast<std::int16_t>(squares[x] + more));
+    }
+  }
+  out = best;
+}
 
 }  // namespace
 
@@ -71,7 +116,8 @@ void DistanceField::free(int column, int row) {
   }
 }
 
-void DistanceField::rebuild(std::span<const std::uint8_t> hits, std::uint8_t occupied) {
+std::span<const std::uint16_t> DistanceField::rebuild(std::span<const std::uint8_t> hits,
+                                                      std::uint8_t occupied) {
   const std::size_t now = std::min(kTilesATick, tiles_.size());
   for (std::size_t k = 0; k < now; ++k) {
     soiled_[tiles_[k]] = 0;
@@ -79,8 +125,10 @@ void DistanceField::rebuild(std::span<const std::uint8_t> hits, std::uint8_t occ
     const int bottom = tiles_[k] / kTiles * kTile;
     measure_gaps(hits, occupied, left, bottom);
     rebuild_tile(left, bottom);
+    rebuilt_[k] = tiles_[k];
   }
   tiles_.erase(tiles_.begin(), tiles_.begin() + static_cast<std::ptrdiff_t>(now));
+  return std::span(rebuilt_).first(now);
 }
 
 /// First half of a distance transform: along the columns, once upwards and once downwards.
@@ -90,16 +138,11 @@ void DistanceField::measure_gaps(std::span<const std::uint8_t> hits,
                                  int bottom) {
   constexpr std::uint8_t kNone = kRadius + 1;
   const int first = std::max(0, left - kRadius);
-  const int columns = std::min(kSize, left + kTile + kRadius) - first;
+  const auto columns = static_cast<std::size_t>(std::min(kSize, left + kTile + kRadius) - first);
   const auto skipped = static_cast<std::size_t>(first - (left - kRadius));
   std::array<std::uint8_t, kSpan> gap;
   const auto pass = [&](int row) {
-    const std::uint8_t* const from = &hits[index(first, row)];
-    std::uint8_t* const to = &gap[skipped];
-    for (int x = 0; x < columns; ++x) {
-      const auto further = static_cast<std::uint8_t>(std::min<int>(to[x] + 1, kNone));
-      to[x] = from[x] >= occupied ? std::uint8_t{0} : further;
-    }
+    grow_gaps(&hits[index(first, row)], occupied, kNone, columns, &gap[skipped]);
   };
   gap.fill(kNone);
   for (int y = std::max(0, bottom - kRadius); y < bottom + kTile; ++y) {
@@ -120,26 +163,13 @@ void DistanceField::rebuild_tile(int left, int bottom) {
   for (int y = 0; y < kTile; ++y) {
     const auto& gaps = gaps_[static_cast<std::size_t>(y)];
     std::array<std::int16_t, kSpan> squares;
-    bool nothing = true;
-    for (std::size_t x = 0; x < kSpan; ++x) {
-      const int gap = gaps[x];
-      squares[x] = gap > kRadius ? kNoSquare : static_cast<std::int16_t>(gap * gap);
-      nothing = nothing && gap > kRadius;
-    }
     std::int16_t* const to = &field_[index(left, bottom + y)];
-    if (nothing) {
+    if (!square_gaps(gaps.data(), kRadius, kSpan, squares.data())) {
       std::fill_n(to, kTile, kFar);
       continue;
     }
     std::array<std::int16_t, kTile> best;
-    best.fill(kNoSquare);
-    for (int k = 0; k <= 2 * kRadius; ++k) {
-      const auto aside = static_cast<std::int16_t>((k - kRadius) * (k - kRadius));
-      const std::int16_t* const from = &squares[static_cast<std::size_t>(k)];
-      for (std::size_t x = 0; x < kTile; ++x) {
-        best[x] = std::min(best[x], static_cast<std::int16_t>(from[x] + aside));
-      }
-    }
+    least_squares(squares.data(), kRadius, best);
     for (std::size_t x = 0; x < kTile; ++x) {
       const auto square = static_cast<std::size_t>(best[x]);
       to[x] = square < metric_.size() ? metric_[square] : kFar;

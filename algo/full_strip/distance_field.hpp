@@ -41,6 +41,7 @@ class DistanceField {
   static constexpr double kCell = 0.05;  // [m]
   static constexpr int kSize = 512;      // cells along an edge
   static constexpr int kTile = 32;       // cells along a tile's edge
+  static constexpr int kTiles = kSize / kTile;
   /// [m] A little more than the circle of 1 m that the papers keep free: an obstacle's push must
   /// end outside that circle.
   static constexpr double kReach = 1.02;
@@ -53,7 +54,8 @@ class DistanceField {
   void free(int column, int row);
   /// Rebuilds the tiles that have waited longest. A cell is occupied if it has at least `occupied`
   /// `hits`.
-  void rebuild(std::span<const std::uint8_t> hits, std::uint8_t occupied);
+  /// @return the tiles rebuilt, row-major, until the next call
+  std::span<const std::uint16_t> rebuild(std::span<const std::uint8_t> hits, std::uint8_t occupied);
   /// Moves the window by whole tiles. New cells are farther than kReach from any obstacle, until
   /// the occupied cells for which beside_new() holds are entered again.
   void shift(int tile_columns, int tile_rows);
@@ -76,10 +78,10 @@ class DistanceField {
   const std::int16_t* from(int column, int row) const { return &field_[index(column, row)]; }
 
  private:
-  static constexpr int kRadius = 21;                      // cells: kReach
+  static constexpr int kRadius = 21;  // cells: kReach
+  static constexpr std::size_t kTilesATick = 8;
   static constexpr std::size_t kWidth = 2 * kRadius + 1;  // edge of the area that a cell lowers
-  static constexpr int kTiles = kSize / kTile;
-  static constexpr int kSpan = kTile + 2 * kRadius;  // cells that a tile's distances depend on
+  static constexpr int kSpan = kTile + 2 * kRadius;       // cells that a tile's distances depend on
   /// For each row of a tile, the cells up or down to the nearest occupied one in each column.
   using Gaps = std::array<std::array<std::uint8_t, kSpan>, kTile>;
 
@@ -95,7 +97,8 @@ class DistanceField {
   std::vector<std::int16_t> metric_;  // [mm] by the squared distance in cells
   std::vector<std::uint8_t> soiled_;  // marks tiles whose distances are too low
   std::vector<std::uint16_t> tiles_;  // the marked tiles, oldest first
-  Gaps gaps_{};                       // workspace of rebuild()
+  std::array<std::uint16_t, kTilesATick> rebuilt_{};
+  Gaps gaps_{};  // workspace of rebuild()
 };
 
 }  // namespace algo

@@ -48,6 +48,7 @@ void LocalMap::reset(const Vec2& centre_W) {
   way_ = 0;
   last_W_.reset();
   next_survey_ = 0;
+  surveyed_.fill(0);
   space_.reset(centre_W);
   const double half = kSize * kCell / 2;
   corner_W_ = {std::round((centre_W.x() - half) / kTileEdge) * kTileEdge,
@@ -77,6 +78,7 @@ bool LocalMap::follow(const Vec2& position_W, BuildingMemory* memory) {
 /// knows better.
 void LocalMap::shift(int tile_columns, int tile_rows, BuildingMemory* memory) {
   if (memory != nullptr) keep_leaving(tile_columns, tile_rows, *memory);
+  surveyed_.fill(0);
   const int columns = tile_columns * DistanceField::kTile;
   const int rows = tile_rows * DistanceField::kTile;
   corner_W_ += Vec2(columns * kCell, rows * kCell);
@@ -121,7 +123,10 @@ void LocalMap::insert(const LaserScan& scan,
   space_.look(scan, sensor_W);
   doubt_suspects();
   if (ageing_ == Ageing::ByScans && scans_ % kAgeEvery == 0) age(1);
-  if (field_) field_->rebuild(std::span(hits_.get(), kCells), kOccupied);
+  if (!field_) return;
+  for (const std::uint16_t tile : field_->rebuild(std::span(hits_.get(), kCells), kOccupied)) {
+    changed_[tile] = surveys_;
+  }
 }
 
 void LocalMap::hit(const Vec2& point_W) {
@@ -142,6 +147,7 @@ void LocalMap::hit(const Vec2& point_W) {
   mean[0] += share * (static_cast<float>(off.x()) - mean[0]);
   mean[1] += share * (static_cast<float>(off.y()) - mean[1]);
   if (hits_[cell] < kOccupied) suspects_.push_back(static_cast<std::uint32_t>(cell));
+  if (hits_[cell] >= kOccupied) changed_[tile_at(column, row)] = surveys_;
   const bool becomes_occupied = before < kOccupied && hits_[cell] >= kOccupied;
   if (becomes_occupied && field_) field_->occupy(column, row);
 }
@@ -151,7 +157,10 @@ bool LocalMap::weaken(std::size_t cell, int by) {
   const std::uint8_t before = hits_[cell];
   hits_[cell] = static_cast<std::uint8_t>(std::max(0, before - by));
   if (field_ && before >= kOccupied && hits_[cell] < kOccupied) {
-    field_->free(static_cast<int>(cell) % kSize, static_cast<int>(cell) / kSize);
+    const int column = static_cast<int>(cell) % kSize;
+    const int row = static_cast<int>(cell) / kSize;
+    field_->free(column, row);
+    changed_[tile_at(column, row)] = surveys_;
   }
   return hits_[cell] > 0;
 }

@@ -56,7 +56,9 @@ class LocalMap {
   /// Writes the clearances of `tiles` of the window's tiles into the coarse layer of `memory`, in
   /// turn. Left out are the window's outermost tiles, whose surroundings are not known. A robot
   /// needs `least` [m]; with `exact`, clearances close to it are measured to the hits themselves,
-  /// as the planner does: it must not find a way from afar that it finds shut when it is near.
+  /// as the planner does: it must not find a way from afar that it finds shut when it is near. A
+  /// tile stays as it is where nothing has changed since its last turn: each call has the same
+  /// arguments.
   void survey(int tiles, double least, bool exact, BuildingMemory& memory);
 
   /// Enters the hits of `scan` as points of W, except those on moving obstacles, and clears the
@@ -142,6 +144,12 @@ class LocalMap {
     return centre_W(cell) + Vec2(static_cast<double>(o[0]), static_cast<double>(o[1]));
   }
   static std::size_t index(int column, int row) { return DistanceField::index(column, row); }
+  /// The tile of a cell, row-major.
+  static std::size_t tile_at(int column, int row) {
+    return static_cast<std::size_t>(row / DistanceField::kTile) * DistanceField::kTiles +
+           static_cast<std::size_t>(column / DistanceField::kTile);
+  }
+  bool is_surveyed(int tile_x, int tile_y) const;
   void hit(const Vec2& point_W);
   void look_through(const LaserScan& scan, const Pose2& sensor_W);
   void doubt_suspects();
@@ -174,9 +182,15 @@ class LocalMap {
   std::uint16_t age_after_ = 20 * 30;
   Ageing ageing_ = Ageing::ByScans;
   std::uint32_t scans_ = 0;
-  double way_ = 0;                        // [m] driven
-  std::optional<Vec2> last_W_{};          // place of the robot
-  int next_survey_ = 0;                   // of the window's tiles
+  double way_ = 0;                // [m] driven
+  std::optional<Vec2> last_W_{};  // place of the robot
+  int next_survey_ = 0;           // of the window's tiles
+  /// Surveys so far: those before the last change of each tile, and up to its own.
+  std::uint32_t surveys_ = 0;
+  using Stamps =
+      std::array<std::uint32_t, std::size_t{DistanceField::kTiles} * DistanceField::kTiles>;
+  Stamps changed_{};
+  Stamps surveyed_{};                     // zero: never
   std::array<std::uint32_t, 2> looks_{};  // by scanners that look ahead, and back
 };
 

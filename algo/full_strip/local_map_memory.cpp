@@ -96,12 +96,27 @@ double LocalMap::room_through(int column, int row, double least, bool exact) con
                   std::min(std::max(a, c), std::max(b, d)));
 }
 
+/// Whether nothing has changed since the last survey of a tile, in it or in its neighbours: a hit
+/// changes distances as far as DistanceField::kReach.
+bool LocalMap::is_surveyed(int tile_x, int tile_y) const {
+  static_assert(DistanceField::kReach < BuildingMemory::kTileEdge);
+  const auto at = [](int x, int y) { return static_cast<std::size_t>(y * kMapTiles + x); };
+  std::uint32_t changed = 0;
+  for (int y = tile_y - 1; y <= tile_y + 1; ++y) {
+    for (int x = tile_x - 1; x <= tile_x + 1; ++x) changed = std::max(changed, changed_[at(x, y)]);
+  }
+  return changed < surveyed_[at(tile_x, tile_y)];
+}
+
 void LocalMap::survey(int tiles, double least, bool exact, BuildingMemory& memory) {
   constexpr int kInner = kMapTiles - 2;
+  ++surveys_;
   constexpr int kSide = BuildingMemory::kFineSide;
   for (int k = 0; k < tiles; ++k, next_survey_ = (next_survey_ + 1) % (kInner * kInner)) {
     const int x = 1 + next_survey_ % kInner;
     const int y = 1 + next_survey_ / kInner;
+    if (is_surveyed(x, y)) continue;
+    surveyed_[static_cast<std::size_t>(y * kMapTiles + x)] = surveys_;
     BuildingMemory::Tile& tile = memory.get(tile_column() + x, tile_row() + y);
     for (int row = 0; row < BuildingMemory::kCoarseSide; ++row) {
       for (int column = 0; column < BuildingMemory::kCoarseSide; ++column) {

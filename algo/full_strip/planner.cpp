@@ -113,7 +113,9 @@ double Planner::clearance(const PlanWorld& world, Id id) const {
 }
 
 Planner::Cell Planner::coarse_of(Id id) const {
-  return is_fine(id) ? BuildingMemory::cell_of(position_W(id)) : cell_of(id);
+  if (!is_fine(id)) return cell_of(id);
+  return {corner_.column + static_cast<int>(id % kFine) / 2,
+          corner_.row + static_cast<int>(id / kFine) / 2};
 }
 
 /// [m] The clearance by own sight, and by the map where there is none.

@@ -73,6 +73,7 @@ void VelocityStage::profile(const StageInput& in) {
   const double spacing = NodeStrip::kSpacing;
   const double deceleration = kBrakeShare * in.limits.acceleration;
   const double narrow = hull_.half_width() + kCreepRoom;
+  const double end = in.stop_at >= 0 ? in.stop_at : in.strip->length();
   for (std::size_t i = 0; i < profiled_; ++i) {
     const Vec2& p = nodes[i].position_W;
     double v = in.limits.max_v;
@@ -88,7 +89,6 @@ void VelocityStage::profile(const StageInput& in) {
     }
     v = std::min(std::max(v, kSlowest), in.limits.max_v);
     const double s = static_cast<double>(i) * spacing;
-    const double end = in.stop_at >= 0 ? in.stop_at : in.strip->length();
     v = std::min(v, std::sqrt(2 * deceleration * std::max(0.0, end - s)));
     speed_[i] = v;
   }

@@ -182,6 +182,40 @@ TEST(BuildingMemory, TheCoarseLayerHoldsTheLargestClearance) {
   EXPECT_EQ(memory.clearance(cell(40, 0)), BuildingMemory::kUnknown);
 }
 
+/// It leaves out the tiles in which nothing has changed. Walls come and go, and the window moves.
+TEST(BuildingMemory, ASurveyInTurnEndsAsOneOfTheWholeWindow) {
+  LocalMap in_turn;
+  LocalMap at_the_end;
+  BuildingMemory layer;
+  BuildingMemory whole;
+  in_turn.reset({0, 0});
+  at_the_end.reset({0, 0});
+  const auto both = [&](const auto& change) {
+    change(in_turn, layer);
+    change(at_the_end, whole);
+    for (int k = 0; k < 40; ++k) {
+      in_turn.survey(8, 0.37, true, layer);
+      for (LocalMap* const map : {&in_turn, &at_the_end}) map->insert({}, {}, {}, {});
+    }
+  };
+  both([](LocalMap& map, BuildingMemory&) { walls::wall(map, {-3, 2}, {3, 2}); });
+  both([](LocalMap& map, BuildingMemory&) { walls::wall(map, {-3, 1.3}, {3, 1.3}); });
+  both([](LocalMap& map, BuildingMemory& memory) { map.follow({5, 0}, &memory); });
+  both([](LocalMap& map, BuildingMemory&) { walls::wall(map, {1.6, -2}, {1.6, -1}); });
+  both([](LocalMap& map, BuildingMemory&) {
+    map.erase_near({0, 2}, 1.2, [](const Vec2&) { return true; });
+  });
+  at_the_end.survey(14 * 14, 0.37, true, whole);
+  std::size_t narrow = 0;
+  for (double x = -6; x < 15; x += 0.2) {
+    for (double y = -9; y < 9; y += 0.2) {
+      ASSERT_EQ(layer.clearance(cell(x, y)), whole.clearance(cell(x, y))) << x << ' ' << y;
+      if (layer.clearance(cell(x, y)) < 100) ++narrow;
+    }
+  }
+  EXPECT_GT(narrow, 100U);
+}
+
 /// A gap of `width` [m] in a wall along x, as the planner finds it from afar.
 bool is_open_from_afar(double width, double at) {
   LocalMap map;
