@@ -144,10 +144,13 @@ class LocalMap {
     return centre_W(cell) + Vec2(static_cast<double>(o[0]), static_cast<double>(o[1]));
   }
   static std::size_t index(int column, int row) { return DistanceField::index(column, row); }
-  /// The tile of a cell, row-major.
+  /// The row-major index of a tile of the window.
+  static std::size_t tile_index(int column, int row) {
+    return static_cast<std::size_t>(row) * DistanceField::kTiles + static_cast<std::size_t>(column);
+  }
+  /// Of the tile of a cell.
   static std::size_t tile_at(int column, int row) {
-    return static_cast<std::size_t>(row / DistanceField::kTile) * DistanceField::kTiles +
-           static_cast<std::size_t>(column / DistanceField::kTile);
+    return tile_index(column / DistanceField::kTile, row / DistanceField::kTile);
   }
   bool is_surveyed(int tile_x, int tile_y) const;
   void hit(const Vec2& point_W);

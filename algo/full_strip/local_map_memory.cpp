@@ -100,12 +100,12 @@ double LocalMap::room_through(int column, int row, double least, bool exact) con
 /// changes distances as far as DistanceField::kReach.
 bool LocalMap::is_surveyed(int tile_x, int tile_y) const {
   static_assert(DistanceField::kReach < BuildingMemory::kTileEdge);
-  const auto at = [](int x, int y) { return static_cast<std::size_t>(y * kMapTiles + x); };
   std::uint32_t changed = 0;
   for (int y = tile_y - 1; y <= tile_y + 1; ++y) {
-    for (int x = tile_x - 1; x <= tile_x + 1; ++x) changed = std::max(changed, changed_[at(x, y)]);
+    for (int x = tile_x - 1; x <= tile_x + 1; ++x)
+      changed = std::max(changed, changed_[tile_index(x, y)]);
   }
-  return changed < surveyed_[at(tile_x, tile_y)];
+  return changed < surveyed_[tile_index(tile_x, tile_y)];
 }
 
 void LocalMap::survey(int tiles, double least, bool exact, BuildingMemory& memory) {
@@ -116,7 +116,7 @@ void LocalMap::survey(int tiles, double least, bool exact, BuildingMemory& memor
     const int x = 1 + next_survey_ % kInner;
     const int y = 1 + next_survey_ / kInner;
     if (is_surveyed(x, y)) continue;
-    surveyed_[static_cast<std::size_t>(y * kMapTiles + x)] = surveys_;
+    surveyed_[tile_index(x, y)] = surveys_;
     BuildingMemory::Tile& tile = memory.get(tile_column() + x, tile_row() + y);
     for (int row = 0; row < BuildingMemory::kCoarseSide; ++row) {
       for (int column = 0; column < BuildingMemory::kCoarseSide; ++column) {
