@@ -146,8 +146,11 @@ void LocalMap::hit(const Vec2& point_W) {
   const float share = before == 0 ? 1.0F : 1.0F / static_cast<float>(before + kPerHit);
   mean[0] += share * (static_cast<float>(off.x()) - mean[0]);
   mean[1] += share * (static_cast<float>(off.y()) - mean[1]);
-  if (hits_[cell] < kOccupied) suspects_.push_back(static_cast<std::uint32_t>(cell));
-  if (hits_[cell] >= kOccupied) changed_[tile_at(column, row)] = surveys_;
+  if (hits_[cell] < kOccupied) {
+    suspects_.push_back(static_cast<std::uint32_t>(cell));
+  } else {
+    changed_[tile_at(column, row)] = surveys_;
+  }
   const bool becomes_occupied = before < kOccupied && hits_[cell] >= kOccupied;
   if (becomes_occupied && field_) field_->occupy(column, row);
 }

@@ -188,12 +188,12 @@ class LocalMap {
   double way_ = 0;                // [m] driven
   std::optional<Vec2> last_W_{};  // place of the robot
   int next_survey_ = 0;           // of the window's tiles
-  /// Surveys so far: those before the last change of each tile, and up to its own.
-  std::uint32_t surveys_ = 0;
-  using Stamps =
+  std::uint32_t surveys_ = 0;     // calls of survey()
+  /// A number for each tile of the window.
+  using TileStamps =
       std::array<std::uint32_t, std::size_t{DistanceField::kTiles} * DistanceField::kTiles>;
-  Stamps changed_{};
-  Stamps surveyed_{};                     // zero: never
+  TileStamps changed_{};                  // surveys_ when the tile last changed
+  TileStamps surveyed_{};                 // surveys_ when the tile was last surveyed; 0: never
   std::array<std::uint32_t, 2> looks_{};  // by scanners that look ahead, and back
 };
 

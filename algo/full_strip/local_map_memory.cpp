@@ -9,7 +9,7 @@
 namespace algo {
 namespace {
 
-constexpr int kMapTiles = LocalMap::kSize / BuildingMemory::kFineSide;  // along the window's edge
+constexpr int kMapTiles = DistanceField::kTiles;  // along the window's edge
 constexpr int kFinePerCoarse = BuildingMemory::kFineSide / BuildingMemory::kCoarseSide;
 constexpr double kCm = 0.01;           // [m]
 constexpr std::uint8_t kRestored = 6;  // hits of a cell that enters again
@@ -96,22 +96,23 @@ double LocalMap::room_through(int column, int row, double least, bool exact) con
                   std::min(std::max(a, c), std::max(b, d)));
 }
 
-/// Whether nothing has changed since the last survey of a tile, in it or in its neighbours: a hit
-/// changes distances as far as DistanceField::kReach.
+/// True if neither the tile nor a neighbour has changed since its last survey: a hit changes
+/// distances as far as DistanceField::kReach.
 bool LocalMap::is_surveyed(int tile_x, int tile_y) const {
   static_assert(DistanceField::kReach < BuildingMemory::kTileEdge);
   std::uint32_t changed = 0;
   for (int y = tile_y - 1; y <= tile_y + 1; ++y) {
-    for (int x = tile_x - 1; x <= tile_x + 1; ++x)
+    for (int x = tile_x - 1; x <= tile_x + 1; ++x) {
       changed = std::max(changed, changed_[tile_index(x, y)]);
+    }
   }
   return changed < surveyed_[tile_index(tile_x, tile_y)];
 }
 
 void LocalMap::survey(int tiles, double least, bool exact, BuildingMemory& memory) {
   constexpr int kInner = kMapTiles - 2;
-  ++surveys_;
   constexpr int kSide = BuildingMemory::kFineSide;
+  ++surveys_;
   for (int k = 0; k < tiles; ++k, next_survey_ = (next_survey_ + 1) % (kInner * kInner)) {
     const int x = 1 + next_survey_ % kInner;
     const int y = 1 + next_survey_ / kInner;

@@ -114,8 +114,7 @@ double Planner::clearance(const PlanWorld& world, Id id) const {
 
 Planner::Cell Planner::coarse_of(Id id) const {
   if (!is_fine(id)) return cell_of(id);
-  return {corner_.column + static_cast<int>(id % kFine) / 2,
-          corner_.row + static_cast<int>(id / kFine) / 2};
+  return coarse_at(static_cast<int>(id % kFine), static_cast<int>(id / kFine));
 }
 
 /// [m] The clearance by own sight, and by the map where there is none.
@@ -237,8 +236,7 @@ void Planner::expand_fine(const PlanWorld& world, Id id) {
     if (is_inner(x, y)) {
       relax(world, id, fine_id(x, y), move.length);
     } else {
-      const Cell cell{corner_.column + x / 2, corner_.row + y / 2};
-      relax(world, id, coarse_id(cell), kAcross * move.length);
+      relax(world, id, coarse_id(coarse_at(x, y)), kAcross * move.length);
     }
   }
 }

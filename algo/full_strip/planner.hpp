@@ -124,6 +124,10 @@ class Planner {
   void allocate(int coarse);
   double clearance(const PlanWorld& world, Id id) const;
   Cell coarse_of(Id id) const;
+  /// The coarse cell of a fine point.
+  Cell coarse_at(int column, int row) const {
+    return {corner_.column + column / 2, corner_.row + row / 2};
+  }
   double room(const PlanWorld& world, Id id) const;
   float cost_of(const PlanWorld& world, Id id);
   float new_cost(const PlanWorld& world, Id id);

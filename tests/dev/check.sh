@@ -65,8 +65,9 @@ long_tests=(AppTest.ABatchOfTenThousand\* ArmInverse.EveryBranch\* ArmRun.APerso
   Buildings.{HaveEveryKind,ATimedDoor}\* Compare.TheBlindOne\* CrowdCrossing.{TheSame,SomebodyWho}\*
   Determinism.SeveralRobots\* FilterStudy.RepeatsExactly\* FleetRobot.{EachRobot,SoItDoes,TheSameSpec}\*
   GroundCourses.ARobotClimbs\* GroundCourses.TenDegrees\* GroundDrive.RefusesSteps\* LocateStudy.\* MapData.\*
-  MapPlan.\* MapRobot.ReachesIts\* MasudaStudy.{BandsCanFail,DocumentsName,DownwardSlopes,HasTheLines,PrintedRules}\*
-  Operator.IsTheSame\* PeopleRun.TheRobotCrosses\* Physics/RecordedSwap.\* ReachStudy.CountsEach\* RunListLoadTest.\*
+  MapPlan.{KeepsOut,ReachesAGoal}\* MapRobot.ReachesIts\*
+  MasudaStudy.{BandsCanFail,DocumentsName,DownwardSlopes,HasTheLines,PrintedRules}\* Operator.IsTheSame\*
+  PeopleRun.TheRobotCrosses\* Physics/RecordedSwap.\* ReachStudy.CountsEach\* RunListLoadTest.\*
   RunQueueTest.WaitingWorlds\* SlopeStudy.TheGuardKeeps\* TightPlaces.\* Tour.AShortOne\* TourStudy.HasARow\*
   Turnover.BeginsWhere\*)
 

@@ -125,7 +125,8 @@ class RecordedRun : public ::testing::Test {
   void change(const std::string& sql) const {
     db::detail::Connection(database_, db::detail::Connection::Mode::Write).execute(sql);
   }
-  /// Its first and last tick. A block also ends where the recorder's clock asks for a commit.
+  /// First and last tick of the second block. A block also ends where the recorder's clock asks for
+  /// a commit.
   std::pair<std::uint64_t, std::uint64_t> second_block() const {
     db::detail::Connection connection(database_, db::detail::Connection::Mode::Read);
     db::detail::Statement block = connection.prepare(
