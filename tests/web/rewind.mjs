@@ -43,6 +43,9 @@ const seconds = (clock) => {
   return 60 * minutes + rest;
 };
 const time_of = async (p) => seconds(await p.get("time").textContent());
+/** How far the shown time may be from a time that was asked for [s]: the slider takes hundredths, the instant
+ *  is the nearest tick's, and the page shows tenths. */
+const kTimeShown = 0.005 + 0.026 / 2 + 0.05 + 0.001;
 const figure = async (p, name) => Number.parseFloat(await p.get(`figure-${name}`).textContent());
 const looks_back = (p) => until("it looks back", 10, () => p.get("live").count(), (n) => n === 1);
 const is_live = (p) => until("it is live", 10, () => p.get("live").count(), (n) => n === 0);
@@ -139,7 +142,7 @@ test("an earlier instant has its own world, and an edit returns to the live run"
     await run_on(base, 60);
     const seek = async (t) => {
       await p.get("live-timeline").fill(String(Number(t.toFixed(2))));
-      await until(`the instant ${t}`, 5, () => time_of(p), (now) => near(now, t, 0.06));
+      await until(`the instant ${t}`, 5, () => time_of(p), (now) => near(now, t, kTimeShown));
       await p.page.waitForTimeout(400);
     };
     await seek((added + removed) / 2);
@@ -192,7 +195,7 @@ test("a page that is opened late knows the events and the world of before", { ti
     assert.equal((await marks(p)).filter((m) => /Obstacle added/.test(m)).length, 1);
     await p.get("live-timeline").fill("1.5");
     await looks_back(p);
-    await until("the instant", 5, () => time_of(p), (t) => near(t, 1.5, 0.06));
+    await until("the instant", 5, () => time_of(p), (t) => near(t, 1.5, kTimeShown));
     await p.close();
     await first.close();
   }));
