@@ -43,9 +43,12 @@ const seconds = (clock) => {
   return 60 * minutes + rest;
 };
 const time_of = async (p) => seconds(await p.get("time").textContent());
-/** How far the shown time may be from a time that was asked for [s]: the slider takes hundredths, the instant
- *  is the nearest tick's, and the page shows tenths. */
-const kTimeShown = 0.005 + 0.026 / 2 + 0.05 + 0.001;
+const kPeriod = 0.026; // [s] of a tick
+/** The time of the tick next to `t`, which the page shows within half a tenth. */
+const tick_time = (t) => Math.round(t / kPeriod) * kPeriod;
+/** That time for the slider, which takes hundredths and goes to the tick at or before. */
+const for_slider = (t) => String(Math.ceil(t * 100 - 1e-6) / 100);
+const shows = (t) => (now) => near(now, t, 0.051);
 const figure = async (p, name) => Number.parseFloat(await p.get(`figure-${name}`).textContent());
 const looks_back = (p) => until("it looks back", 10, () => p.get("live").count(), (n) => n === 1);
 const is_live = (p) => until("it is live", 10, () => p.get("live").count(), (n) => n === 0);
@@ -75,7 +78,7 @@ test("the time of the live run is dragged back and says live again with one pres
     // Figures, sentence and age are those of that instant; the robot goes on.
     const tick = await until("its tick", 5, async () => {
       const t = Number(await p.get("live-timeline").inputValue());
-      return (await json(base, `/runs/${run.id}/ticks?from=${Math.round(t / 0.026) - 2}&limit=5`)).items
+      return (await json(base, `/runs/${run.id}/ticks?from=${Math.round(t / kPeriod) - 2}&limit=5`)).items
         .find((r) => near(r.t, t, 0.014));
     });
     assert.ok(near(await figure(p, "speed"), Math.abs(tick.v), 0.006), `speed ${await figure(p, "speed")}, recorded ${tick.v}`);
@@ -93,7 +96,7 @@ test("the time of the live run is dragged back and says live again with one pres
     const value = () => p.get("live-timeline").inputValue().then(Number);
     const from = await value();
     await p.page.keyboard.press(",");
-    await until("one tick back", 5, value, (v) => near(v, from - 0.026, 0.014));
+    await until("one tick back", 5, value, (v) => near(v, from - kPeriod, 0.014));
     await p.page.keyboard.press(".");
     await until("and on", 5, value, (v) => near(v, from, 0.014));
     await p.page.keyboard.press("p");
@@ -140,9 +143,10 @@ test("an earlier instant has its own world, and an edit returns to the live run"
     const removed = await run_on(base, 100);
     await json(base, `/session/obstacles/${id}`, { method: "DELETE" });
     await run_on(base, 60);
-    const seek = async (t) => {
-      await p.get("live-timeline").fill(String(Number(t.toFixed(2))));
-      await until(`the instant ${t}`, 5, () => time_of(p), (now) => near(now, t, kTimeShown));
+    const seek = async (about) => {
+      const t = tick_time(about);
+      await p.get("live-timeline").fill(for_slider(t));
+      await until(`the instant ${t}`, 5, () => time_of(p), shows(t));
       await p.page.waitForTimeout(400);
     };
     await seek((added + removed) / 2);
@@ -193,9 +197,10 @@ test("a page that is opened late knows the events and the world of before", { ti
     const p = await open(browser, base);
     await until("the mark", 15, () => marks(p), (m) => m.some((words) => /Obstacle added/.test(words)));
     assert.equal((await marks(p)).filter((m) => /Obstacle added/.test(m)).length, 1);
-    await p.get("live-timeline").fill("1.5");
+    const t = tick_time(1.5);
+    await p.get("live-timeline").fill(for_slider(t));
     await looks_back(p);
-    await until("the instant", 5, () => time_of(p), (t) => near(t, 1.5, kTimeShown));
+    await until("the instant", 5, () => time_of(p), shows(t));
     await p.close();
     await first.close();
   }));
