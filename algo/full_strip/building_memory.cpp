@@ -48,6 +48,7 @@ BuildingMemory::Tile& BuildingMemory::get(int column, int row) {
   tile.seen.fill(0);
   tile.doubts.fill(0);
   tile.near = 0;
+  tile.driven = 0;
   tile.column = static_cast<std::int16_t>(column);
   tile.row = static_cast<std::int16_t>(row);
   tile.used = true;

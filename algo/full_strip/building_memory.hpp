@@ -37,6 +37,7 @@ class BuildingMemory {
     std::array<std::uint8_t, kCells> seen{};  // beams that have crossed it
     std::array<std::uint8_t, kCells> doubts{};
     std::uint64_t near = 0;            // a bit per cell: a beam came here from within kNear
+    std::uint64_t driven = 0;          // a bit per cell: the robot's centre was here
     std::int16_t column = 0, row = 0;  // its place: the plane's tiles share memory periodically
     bool used = false;
   };
@@ -80,6 +81,16 @@ class BuildingMemory {
     return tile != nullptr && (tile->near >> within(c) & 1U) != 0;
   }
   static constexpr double kNear = 2.5;  // [m]
+
+  /// The robot's centre is at `here_W`.
+  void drive(const Vec2& here_W) {
+    const Cell c = cell_of(here_W);
+    get(tile_of(c.column), tile_of(c.row)).driven |= std::uint64_t{1} << within(c);
+  }
+  bool driven(Cell c) const {
+    const Tile* const tile = find(tile_of(c.column), tile_of(c.row));
+    return tile != nullptr && (tile->driven >> within(c) & 1U) != 0;
+  }
   /// [cm] or kUnknown.
   std::uint8_t clearance(Cell c) const {
     const Tile* const tile = find(tile_of(c.column), tile_of(c.row));

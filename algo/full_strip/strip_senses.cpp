@@ -34,6 +34,7 @@ void StripSenses::update(const ControlInput& in, const HullCheck& hull, bool tra
   const Pose2& here = in.odometry.pose;
   points_.follow(here, in.stamp);
   map_.follow(here.position(), &memory_);
+  memory_.drive(here.position());
   if (!placed_) hull.take_place(map_.seen(), here);
   placed_ = true;
   hull.stand_on(map_.seen(), here);

@@ -313,6 +313,18 @@ TEST(Planner, ALenientSearchLeadsToANarrowPlaceThatNobodyHasSeenFromNearby) {
   EXPECT_EQ(pen.search_for_it(true), Planner::State::NoWay);
 }
 
+/// The scans of a jamb err by more than the room that a door leaves.
+TEST(Planner, LeadsBackThroughANarrowPlaceThatTheRobotHasPassed) {
+  Pen pen;
+  pen.look_at({2.5, -0.5}, {3.5, 0.5});
+  EXPECT_EQ(pen.search_for_it(false), Planner::State::NoWay);
+  for (double x = 2; x <= 4; x += 0.05) pen.memory.drive({x, 0});
+  EXPECT_EQ(pen.search_for_it(false), Planner::State::Found);
+  EXPECT_FALSE(pen.path.unsure);
+  wall(pen.map, {3, -0.25}, {3, 0.25});  // the door has closed
+  EXPECT_EQ(pen.search_for_it(true), Planner::State::NoWay);
+}
+
 TEST(Planner, ALenientSearchTakesASureWayIfThereIsOne) {
   Search search;
   wall(search.map, {2, -4}, {2, -0.25});
