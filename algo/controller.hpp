@@ -8,6 +8,7 @@
 #include <string>
 
 #include "algo/drawn_space.hpp"
+#include "algo/map_move.hpp"
 #include "algo/observation.hpp"
 #include "algo/parameters.hpp"
 #include "algo/request.hpp"
@@ -49,6 +50,10 @@ class Controller {
   virtual void begin(const RunFacts& /*run*/) {}
   /// Forgets the previous run.
   virtual void reset(const Pose2& start_W) = 0;
+
+  /// The map of the robot's surroundings moved, and the robot, now at `here_W`, with it: what is
+  /// remembered of W lies elsewhere. A controller that does not know how to move it forgets it.
+  virtual void move(const MapMove& /*move*/, const Pose2& here_W) { reset(here_W); }
 
   /// Computes one tick. Overwrites every field of `out`. Reads `parameters` anew each tick. Without
   /// a goal, or if any input is not finite, the twist is zero and nothing is shown (NaN never

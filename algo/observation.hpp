@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "algo/arm_spec.hpp"
 #include "algo/laser_scan.hpp"
+#include "algo/map_move.hpp"
 #include "algo/map_pose.hpp"
 #include "algo/recycled.hpp"
 #include "algo/types.hpp"
@@ -150,6 +152,8 @@ struct Observation {
   Recycled<ChannelReading> channels{};  // only those new in this tick
   std::optional<JointReading> joints{};
   std::optional<MapPose> map_pose{};  // of a robot that knows a map
+  /// The robot's own map moved in this tick, and its pose with it. The record does not keep it.
+  std::shared_ptr<const MapMove> map_move{};
 
   bool bumper_pressed() const {
     for (const BumperReading& bumper : bumpers) {
@@ -171,6 +175,7 @@ struct Observation {
     channels.clear();
     joints.reset();
     map_pose.reset();
+    map_move.reset();
   }
 };
 

@@ -40,6 +40,46 @@ void BuildingMemory::reset() {
   looks_ = 0;
 }
 
+/// The middles of the cells in which the robot has been.
+std::vector<Vec2> BuildingMemory::driven_W() const {
+  std::vector<Vec2> middles_W;
+  for (std::size_t i = 0; i < kTileCount; ++i) {
+    const Tile& tile = tiles_[i];
+    for (std::size_t k = 0; tile.used && tile.driven != 0 && k < kCells; ++k) {
+      if ((tile.driven >> k & 1U) == 0) continue;
+      const auto x = static_cast<int>(k % kCoarseSide);
+      const auto y = static_cast<int>(k / kCoarseSide);
+      middles_W.push_back(middle_W({tile.column * kCoarseSide + x, tile.row * kCoarseSide + y}));
+    }
+  }
+  return middles_W;
+}
+
+void BuildingMemory::draw(const MapMove& move) {
+  static_assert(kCoarse == DrawnSpace::kCell);
+  const std::vector<Vec2> driven = driven_W();
+  reset();
+  for (const Vec2& p_W : driven) {
+    // It comes to lie between cells.
+    for (const Vec2& off : {Vec2(-1, -1), Vec2(1, -1), Vec2(-1, 1), Vec2(1, 1)}) {
+      drive(move.moved(p_W) + kCoarse / 4 * off);
+    }
+  }
+  for (const Eigen::Vector2f& wall : move.walls_W) {
+    const Vec2 p_W = wall.cast<double>();
+    const int column = whole_below(p_W.x() / kFine);
+    const int row = whole_below(p_W.y() / kFine);
+    const int x = column & (kFineSide - 1);
+    const int y = row & (kFineSide - 1);
+    Tile& tile = get((column - x) / kFineSide, (row - y) / kFineSide);
+    tile.occupied[static_cast<std::size_t>(y)] |= 1U << x;
+  }
+  for (const MapMove::Seen& seen : move.seen) {
+    const Cell c{seen.column, seen.row};
+    get(tile_of(c.column), tile_of(c.row)).seen[within(c)] = seen.beams;
+  }
+}
+
 BuildingMemory::Tile& BuildingMemory::get(int column, int row) {
   Tile& tile = tiles_[place(column, row)];
   if (tile.used && tile.column == column && tile.row == row) return tile;

@@ -7,9 +7,11 @@
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
+#include <vector>
 
 #include "algo/full_strip/distance_field.hpp"
 #include "algo/laser_scan.hpp"
+#include "algo/map_move.hpp"
 #include "algo/types.hpp"
 
 namespace algo {
@@ -56,6 +58,10 @@ class BuildingMemory {
   }
   /// The same, made if it is missing.
   Tile& get(int column, int row);
+
+  /// Forgets all but where the robot has been, and remembers the map after the move. Clearances are
+  /// not known until a survey.
+  void draw(const MapMove& move);
 
   /// Marks the coarse cells that the beams of a scan from `sensor_W` cross, up to kLook. A beam
   /// does not cross the cell in which it ends; a mixed beam raises doubts there and around.
@@ -114,6 +120,7 @@ class BuildingMemory {
  private:
   static constexpr std::uint8_t kDoubtful = 8;  // doubts of a cell
   void doubt(Cell c);
+  std::vector<Vec2> driven_W() const;
   static std::size_t place(int column, int row) {
     constexpr auto kMask = static_cast<unsigned>(kTiles - 1);
     return (static_cast<unsigned>(row) & kMask) * static_cast<std::size_t>(kTiles) +

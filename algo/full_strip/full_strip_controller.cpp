@@ -56,6 +56,13 @@ void FullStripController::reset(const Pose2& start_W) {
   state_ = kNone;
 }
 
+/// Takes the new map for what it has seen, and the goal for a new one.
+void FullStripController::move(const MapMove& move, const Pose2& here_W) {
+  if (stage_.hull().half_width() <= 0) return reset(here_W);  // it has not driven yet
+  senses_.move(move, here_W, stage_.hull());
+  route_.clear_goal();
+}
+
 /// Forgets what it was doing and for how long, but not the strip: another behaviour has driven.
 void FullStripController::forget_attempts(const ControlInput& in) {
   narrow_place_.reset();

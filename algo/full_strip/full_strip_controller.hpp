@@ -30,6 +30,7 @@ class FullStripController final : public Controller {
 
   void begin(const RunFacts& run) override;
   void reset(const Pose2& start_W) override;
+  void move(const MapMove& move, const Pose2& here_W) override;
   void update(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
   void explain(const Telemetry& t, Explanation& words) const override;
 

@@ -40,16 +40,22 @@ LocalMap::LocalMap(Distances distances, Ageing ageing)
 }
 
 void LocalMap::reset(const Vec2& centre_W) {
-  for (const std::uint32_t cell : active_) hits_[cell] = 0;
-  if (field_) field_->reset();
-  active_.clear();
   scans_ = 0;
   looks_ = {};
   way_ = 0;
-  last_W_.reset();
   next_survey_ = 0;
-  surveyed_.fill(0);
   space_.reset(centre_W);
+  forget_cells(centre_W);
+}
+
+/// Empties the window, and centres it on `centre_W`.
+void LocalMap::forget_cells(const Vec2& centre_W) {
+  for (const std::uint32_t cell : active_) hits_[cell] = 0;
+  if (field_) field_->reset();
+  active_.clear();
+  suspects_.clear();
+  last_W_.reset();
+  surveyed_.fill(0);
   const double half = kSize * kCell / 2;
   corner_W_ = {std::round((centre_W.x() - half) / kTileEdge) * kTileEdge,
                std::round((centre_W.y() - half) / kTileEdge) * kTileEdge};

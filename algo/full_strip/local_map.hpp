@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "algo/full_strip/building_memory.hpp"
@@ -53,12 +54,18 @@ class LocalMap {
   /// Moves the window if the robot has left its middle; true if it moved. What leaves the window is
   /// kept in `memory`, and what enters it is read from there.
   bool follow(const Vec2& position_W, BuildingMemory* memory = nullptr);
+  /// Forgets everything but the seen space, and takes the walls of a map of the window about
+  /// `centre_W`.
+  void draw(const Vec2& centre_W, std::span<const Eigen::Vector2f> walls_W);
+  /// Middles of windows whose inner tiles cover all of `memory`.
+  static std::vector<Vec2> windows_over(const BuildingMemory& memory);
   /// Writes the clearances of `tiles` of the window's tiles into the coarse layer of `memory`, in
   /// turn. Left out are the window's outermost tiles, whose surroundings are not known. A robot
   /// needs `least` [m]; with `exact`, clearances close to it are measured to the hits themselves,
   /// as the planner does: it must not find a way from afar that it finds shut when it is near. A
   /// tile stays as it is where nothing has changed since its last turn: each call has the same
   /// arguments.
+  static constexpr int kInner = DistanceField::kTiles - 2;  // surveyed tiles along the edge
   void survey(int tiles, double least, bool exact, BuildingMemory& memory);
 
   /// Enters the hits of `scan` as points of W, except those on moving obstacles, and clears the
@@ -152,6 +159,7 @@ class LocalMap {
   static std::size_t tile_at(int column, int row) {
     return tile_index(column / DistanceField::kTile, row / DistanceField::kTile);
   }
+  void forget_cells(const Vec2& centre_W);
   bool is_surveyed(int tile_x, int tile_y) const;
   void hit(const Vec2& point_W);
   void look_through(const LaserScan& scan, const Pose2& sensor_W);
@@ -163,6 +171,7 @@ class LocalMap {
   void shift(int tile_columns, int tile_rows, BuildingMemory* memory);
   void keep_leaving(int tile_columns, int tile_rows, BuildingMemory& memory) const;
   void restore_entering(int tile_columns, int tile_rows, const BuildingMemory& memory);
+  void occupy(std::size_t cell);
   void restore(int column, int row, const BuildingMemory::Tile& tile);
   int tile_column() const;
   int tile_row() const;

@@ -64,6 +64,33 @@ void LocalMap::restore_entering(int tile_columns, int tile_rows, const BuildingM
   });
 }
 
+void LocalMap::draw(const Vec2& centre_W, std::span<const Eigen::Vector2f> walls_W) {
+  forget_cells(centre_W);
+  for (const Eigen::Vector2f& wall_W : walls_W) {
+    const Vec2 place = (wall_W.cast<double>() - corner_W_) / kCell;
+    const int column = whole_below(place.x());
+    const int row = whole_below(place.y());
+    if (column < 0 || row < 0 || column >= kSize || row >= kSize) continue;
+    const std::size_t cell = index(column, row);
+    occupy(cell);
+    const Vec2 off = kCell * (place - Vec2(column + 0.5, row + 0.5));
+    means_[cell] = {static_cast<float>(off.x()), static_cast<float>(off.y())};
+  }
+}
+
+std::vector<Vec2> LocalMap::windows_over(const BuildingMemory& memory) {
+  constexpr double kApart = kInner * BuildingMemory::kTileEdge;
+  const Vec2 low_W = BuildingMemory::kCoarse * Vec2(memory.low().column, memory.low().row);
+  const Vec2 high_W = BuildingMemory::kCoarse * Vec2(memory.high().column, memory.high().row);
+  std::vector<Vec2> middles_W;
+  for (double y = low_W.y() + kApart / 2; y < high_W.y() + kApart / 2; y += kApart) {
+    for (double x = low_W.x() + kApart / 2; x < high_W.x() + kApart / 2; x += kApart) {
+      middles_W.emplace_back(x, y);
+    }
+  }
+  return middles_W;
+}
+
 /// Occupies the cells of the window's tile (column, row). The means of their hits are lost.
 void LocalMap::restore(int column, int row, const BuildingMemory::Tile& tile) {
   constexpr int kSide = BuildingMemory::kFineSide;
@@ -72,13 +99,18 @@ void LocalMap::restore(int column, int row, const BuildingMemory::Tile& tile) {
     for (int x = 0; bits != 0 && x < kSide; ++x) {
       if ((bits >> x & 1U) == 0) continue;
       const std::size_t cell = index(column * kSide + x, row * kSide + y);
-      if (hits_[cell] == 0) active_.push_back(static_cast<std::uint32_t>(cell));
-      hits_[cell] = std::max(hits_[cell], kRestored);
-      seen_[cell] = now();
+      occupy(cell);
       means_[cell] = {};
-      if (field_) field_->occupy(column * kSide + x, row * kSide + y);
     }
   }
+}
+
+/// Occupies a cell as if it had been hit often.
+void LocalMap::occupy(std::size_t cell) {
+  if (hits_[cell] == 0) active_.push_back(static_cast<std::uint32_t>(cell));
+  hits_[cell] = std::max(hits_[cell], kRestored);
+  seen_[cell] = now();
+  if (field_) field_->occupy(static_cast<int>(cell) % kSize, static_cast<int>(cell) / kSize);
 }
 
 /// [m] The room for driving through the coarse cell that begins at the cell (column, row), along
@@ -110,7 +142,6 @@ bool LocalMap::is_surveyed(int tile_x, int tile_y) const {
 }
 
 void LocalMap::survey(int tiles, double least, bool exact, BuildingMemory& memory) {
-  constexpr int kInner = kMapTiles - 2;
   constexpr int kSide = BuildingMemory::kFineSide;
   ++surveys_;
   for (int k = 0; k < tiles; ++k, next_survey_ = (next_survey_ + 1) % (kInner * kInner)) {

@@ -45,6 +45,17 @@ void SeenSpace::follow(const Vec2& position_W) {
   }
 }
 
+void SeenSpace::move(const MapMove& move) {
+  const SeenSpace before = *this;
+  follow(move.to_W.position());
+  for (int row = bottom_; row < bottom_ + kSize; ++row) {
+    for (int column = left_; column < left_ + kSize; ++column) {
+      const Vec2 middle_W = kCell * Vec2(column + 0.5, row + 0.5);
+      seen_[index(column, row)] = before.seen(move.moved_back(middle_W)) ? 1 : 0;
+    }
+  }
+}
+
 void SeenSpace::look(const LaserScan& scan, const Pose2& sensor_W) {
   const Vec2 middle_W = Vec2(left_ + kSize / 2, bottom_ + kSize / 2) * kCell;
   const bool near = (sensor_W.position() - middle_W).norm() < kSize * kCell / 2 - kLook - 2 * kCell;

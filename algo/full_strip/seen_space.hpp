@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "algo/laser_scan.hpp"
+#include "algo/map_move.hpp"
 #include "algo/types.hpp"
 
 namespace algo {
@@ -25,6 +26,9 @@ class SeenSpace {
   void reset(const Vec2& centre_W);
   /// Moves the window with the robot.
   void follow(const Vec2& position_W);
+
+  /// Moves what was seen with the robot.
+  void move(const MapMove& move);
 
   /// Enters the beams of `scan`, taken at `sensor_W`, up to kLook.
   void look(const LaserScan& scan, const Pose2& sensor_W);

@@ -30,6 +30,20 @@ void StripSenses::reset(const Pose2& start_W) {
   placed_ = false;
 }
 
+void StripSenses::move(const MapMove& move, const Pose2& here_W, const HullCheck& hull) {
+  memory_.draw(move);
+  const StepCost cost = StepCost::of_hull(hull.half_width(), hull.is_round());
+  for (const Vec2& middle_W : LocalMap::windows_over(memory_)) {
+    map_.draw(middle_W, move.walls_W);
+    map_.survey(LocalMap::kInner * LocalMap::kInner, cost.least, hull.is_round(), memory_);
+  }
+  map_.draw(here_W.position(), move.walls_W);
+  map_.seen().move(move);
+  tracker_.reset();
+  points_.reset();
+  close_W_.clear();
+}
+
 void StripSenses::update(const ControlInput& in, const HullCheck& hull, bool track) {
   const Pose2& here = in.odometry.pose;
   points_.follow(here, in.stamp);

@@ -15,6 +15,8 @@ class StripSenses {
  public:
   StripSenses();
   void reset(const Pose2& start_W);
+  /// The map moved, and the robot, now at `here_W`, with it. Allocates.
+  void move(const MapMove& move, const Pose2& here_W, const HullCheck& hull);
   /// Enters the scan of this tick, if it is new, each beam from the pose at which it was fired.
   /// `track`: whether to look for moving obstacles.
   void update(const ControlInput& in, const HullCheck& hull, bool track);

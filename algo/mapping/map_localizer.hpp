@@ -34,6 +34,9 @@ class PlaceFilter {
   /// Of a map that somebody gave: it is bent, and things have moved since.
   static Vec3 known_map_errors();
 
+  /// The map has moved under the robot, which is now at `pose_M`.
+  void move(const Pose2& pose_M) { pose_M_ = pose_M; }
+
   const Pose2& pose_M() const { return pose_M_; }
   /// Of x, y [m] and heading [rad] in M.
   Eigen::Matrix3d covariance() const { return covariance_.topLeftCorner<3, 3>(); }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <type_traits>
 
 namespace algo {
 namespace {
@@ -37,13 +38,24 @@ void OccupancyMap::pass(const Vec2& from_W, const Vec2& to_W) {
     before = at;
     Tally& tally = open(at);
     if (tally.passes < kMost) ++tally.passes;
+    if (tally.hits == 0) tally.station = station_;
   }
+}
+
+bool OccupancyMap::sees(const Vec2& from_W, const Vec2& to_W) const {
+  const Vec2 way = to_W - from_W;
+  const int steps = static_cast<int>(std::ceil(2 * way.norm() / edge_));
+  for (int k = 0; k < steps; ++k) {
+    if (at(cell_of(from_W + way * (static_cast<double>(k) / steps))).occupied()) return false;
+  }
+  return true;
 }
 
 OccupancyMap::Tally& OccupancyMap::hit(const Vec2& point_W) {
   const Index at = cell_of(point_W);
   Tally& tally = open(at);
   if (tally.hits < kMost) ++tally.hits;
+  tally.station = station_;
   const Vec2 off = point_W - centre(at);
   const float share = 1.0F / static_cast<float>(std::min(tally.hits, kFresh));
   tally.x += share * (static_cast<float>(off.x()) - tally.x);
@@ -70,6 +82,61 @@ Facing OccupancyMap::Tally::facing() const {
 void OccupancyMap::mark_free(const Vec2& p_W) {
   constexpr std::uint16_t kFreePasses = 4;
   open(cell_of(p_W)).passes = kFreePasses;
+}
+
+/// Adds the counts of `tally`, whose means are of this cell.
+void OccupancyMap::add(const Index& cell, const Tally& tally) {
+  const auto sum = [](std::uint16_t a, std::uint16_t b) {
+    return static_cast<std::uint16_t>(std::min<int>(kMost, a + b));
+  };
+  Tally& mine = open(cell);
+  mine.passes = sum(mine.passes, tally.passes);
+  if (tally.hits > 0 || mine.hits == 0) mine.station = tally.station;
+  if (tally.hits == 0) return;
+  mine.hits = sum(mine.hits, tally.hits);
+  const double share = std::min(1.0, static_cast<double>(tally.hits) / mine.hits);
+  const auto meet = [&](auto& mean, auto other) {
+    const double met = mean + share * (static_cast<double>(other) - mean);
+    mean = static_cast<std::remove_reference_t<decltype(mean)>>(
+        std::is_integral_v<decltype(other)> ? std::round(met) : met);
+  };
+  meet(mine.x, tally.x);
+  meet(mine.y, tally.y);
+  meet(mine.normal_x, tally.normal_x);
+  meet(mine.normal_y, tally.normal_y);
+}
+
+void OccupancyMap::add(const OccupancyMap& other) {
+  other.each_cell([&](const Index& cell, const Tally& tally) {
+    if (tally.known()) add(cell, tally);
+  });
+}
+
+/// `tally`, its hits moved to `to_W` and turned.
+OccupancyMap::Tally OccupancyMap::moved(const Tally& tally, const Vec2& to_W, double turn) const {
+  const Vec2 off = to_W - centre(cell_of(to_W));
+  const Vec2 normal = to_parent(Pose2{0, 0, turn}, Vec2(tally.normal_x, tally.normal_y));
+  Tally out = tally;
+  out.x = static_cast<float>(off.x());
+  out.y = static_cast<float>(off.y());
+  out.normal_x = static_cast<std::int8_t>(std::lround(normal.x()));
+  out.normal_y = static_cast<std::int8_t>(std::lround(normal.y()));
+  return out;
+}
+
+OccupancyMap OccupancyMap::moved(std::span<const StationMove> stations) const {
+  OccupancyMap out(edge_);
+  // The walls first: the beams that passed beside a wall must not take its cell.
+  for (const bool walls : {true, false}) {
+    each_cell([&](const Index& cell, const Tally& tally) {
+      if (!tally.known() || (tally.hits > 0) != walls) return;
+      const StationMove& move = stations[tally.station];
+      const Vec2 to_W = move.moved(mean_W(cell, tally));
+      const Index to = out.cell_of(to_W);
+      if (walls || out.at(to).hits == 0) out.add(to, moved(tally, to_W, move.turn()));
+    });
+  }
+  return out;
 }
 
 void OccupancyMap::insert(const LaserScan& scan, const Pose2& sensor_W, double reach) {

@@ -7,10 +7,12 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
 #include "algo/laser_scan.hpp"
+#include "algo/map_move.hpp"
 #include "algo/mapping/facing.hpp"
 #include "algo/types.hpp"
 
@@ -30,6 +32,7 @@ class OccupancyMap {
     std::uint16_t passes = 0;  // beams that went through
     /// Mean of the unit normals that the hits came with, in 1 / kUnit.
     std::int8_t normal_x = 0, normal_y = 0;
+    std::uint16_t station = 0;  // from which the newest beam came
     bool known() const { return hits > 0 || passes > 0; }
     /// Beams pass often through cells of walls seen at a slant, and far more often through those of
     /// things that left.
@@ -59,6 +62,17 @@ class OccupancyMap {
     pass(from_W, to_W);
     face(hit(to_W), facing_W.side);
   }
+
+  /// Adds what another map of the same cells counted.
+  void add(const OccupancyMap& other);
+  /// The number of the station from which the next scans are taken, below kMostStations.
+  void set_station(std::size_t station) { station_ = static_cast<std::uint16_t>(station); }
+  static constexpr std::size_t kMostStations = 0x10000;
+  /// This map with each cell moved as the station from which it was seen last.
+  OccupancyMap moved(std::span<const StationMove> stations) const;
+
+  /// True if no wall lies on the line between two points.
+  bool sees(const Vec2& from_W, const Vec2& to_W) const;
 
   /// Makes the cell of `p_W` a wall, or free, as a map read from a file says.
   void mark_wall(const Vec2& p_W) { hit(p_W); }
@@ -154,8 +168,11 @@ class OccupancyMap {
   void pass(const Vec2& from_W, const Vec2& to_W);
   Tally& hit(const Vec2& point_W);
   static void face(Tally& tally, const Vec2& normal_W);
+  void add(const Index& cell, const Tally& tally);
+  Tally moved(const Tally& tally, const Vec2& to_W, double turn) const;
 
   double edge_ = 0;  // [m]
+  std::uint16_t station_ = 0;
   std::unordered_map<std::uint64_t, std::unique_ptr<Tile>> tiles_{};
   Index last_{};  // the tile opened last, and its place: beams stay in it for long
   Tile* last_tile_ = nullptr;

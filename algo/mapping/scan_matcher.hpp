@@ -49,6 +49,14 @@ struct ScanMatch {
   Eigen::Matrix3d points = Eigen::Matrix3d::Zero();
 };
 
+/// The poses of a search about a guess: half extents and steps.
+struct SearchGrid {
+  double window = 0.6;        // [m]
+  double step = 0.1;          // [m]
+  double turn_window = 0.26;  // [rad]
+  double turn_step = 0.02;    // [rad]
+};
+
 /// Point-to-line ICP (Chen and Medioni 1992; Censi 2008), after a correlative search if the
 /// odometry is too far off (Olson 2009). Minimises over the pose of R
 ///
@@ -78,10 +86,10 @@ class ScanMatcher {
   template <typename Map>
   ScanMatch match(const Map& map, const Pose2& guess_W, const MatchPrior& prior) const;
 
-  /// The pose in the window about `guess_W` at which most points lie on the map: coarse, as the
-  /// start of a match.
+  /// The pose on the grid about `guess_W` at which most points lie on the map: coarse, as the start
+  /// of a match.
   template <typename Map>
-  Pose2 search(const Map& map, const Pose2& guess_W) const;
+  Pose2 search(const Map& map, const Pose2& guess_W, const SearchGrid& grid = {}) const;
 
  private:
   static constexpr double kSpacing = 0.08;                           // [m] between two points
@@ -89,11 +97,7 @@ class ScanMatcher {
   static constexpr std::array<double, 3> kReaches{0.5, 0.25, 0.15};  // [m] half edge of the square
   static constexpr int kIterations = 8;                              // at most, per reach
   static constexpr double kSettled = 1e-4;                           // [m] and [rad]
-  static constexpr double kWindow = 0.6;       // [m] of the search, either way
-  static constexpr double kWindowStep = 0.1;   // [m]
-  static constexpr double kTurnWindow = 0.26;  // [rad]
-  static constexpr double kTurnStep = 0.02;    // [rad]
-  static constexpr std::size_t kSearched = 3;  // uses every third point
+  static constexpr std::size_t kSearched = 3;  // a search uses every third point
 
   /// Normal equations of one Gauss-Newton step about `pose_W`.
   class Step {
@@ -131,9 +135,9 @@ class ScanMatcher {
     return fit.line();
   }
 
-  /// The number of search points with map points around them.
+  /// The number of search points with map points in the square of half edge `reach` [m] about them.
   template <typename Map>
-  std::size_t lying_on(const Map& map, const Pose2& pose_W) const;
+  std::size_t lying_on(const Map& map, const Pose2& pose_W, double reach) const;
 
   FacedPoints scan_R_{};
   std::vector<Vec2> points_R_{};
@@ -165,30 +169,29 @@ ScanMatch ScanMatcher::match(const Map& map, const Pose2& guess_W, const MatchPr
 }
 
 template <typename Map>
-std::size_t ScanMatcher::lying_on(const Map& map, const Pose2& pose_W) const {
+std::size_t ScanMatcher::lying_on(const Map& map, const Pose2& pose_W, double reach) const {
   std::size_t count = 0;
   for (std::size_t k = 0; k < points_R_.size(); k += kSearched) {
     bool met = false;
-    map.each_near(
-        to_parent(pose_W, points_R_[k]), kWindowStep / 2, [&](const Vec2&) { met = true; });
+    map.each_near(to_parent(pose_W, points_R_[k]), reach, [&](const Vec2&) { met = true; });
     count += met ? 1 : 0;
   }
   return count;
 }
 
 template <typename Map>
-Pose2 ScanMatcher::search(const Map& map, const Pose2& guess_W) const {
-  const int turns = static_cast<int>(kTurnWindow / kTurnStep);
-  const int steps = static_cast<int>(kWindow / kWindowStep);
+Pose2 ScanMatcher::search(const Map& map, const Pose2& guess_W, const SearchGrid& grid) const {
+  const int turns = static_cast<int>(grid.turn_window / grid.turn_step);
+  const int steps = static_cast<int>(grid.window / grid.step);
   Pose2 best = guess_W;
-  std::size_t most = lying_on(map, guess_W);
+  std::size_t most = lying_on(map, guess_W, grid.step / 2);
   for (int a = -turns; a <= turns; ++a) {
     for (int i = -steps; i <= steps; ++i) {
       for (int j = -steps; j <= steps; ++j) {
-        const Pose2 pose_W{guess_W.x + i * kWindowStep,
-                           guess_W.y + j * kWindowStep,
-                           wrap_angle(guess_W.heading + a * kTurnStep)};
-        const std::size_t count = lying_on(map, pose_W);
+        const Pose2 pose_W{guess_W.x + i * grid.step,
+                           guess_W.y + j * grid.step,
+                           wrap_angle(guess_W.heading + a * grid.turn_step)};
+        const std::size_t count = lying_on(map, pose_W, grid.step / 2);
         if (count <= most) continue;
         most = count;
         best = pose_W;

@@ -236,7 +236,7 @@ void Pipeline::look(Telemetry& t) {
   if (joystick_ticks_ > 0) --joystick_ticks_;
   for (const Request& request : t.requests) apply(request);
 
-  begin_anew_where_found(t.observation);
+  notice_jump(t.observation);
   sense(t);     // filter the newest scan, find the nearest return of each side
   sequence(t);  // take the next goal where one is reached
 }
@@ -269,13 +269,18 @@ void Pipeline::apply(const Request& request) {
   }
 }
 
-/// A robot that was located anew may have jumped: what behaviours remember lies elsewhere.
-void Pipeline::begin_anew_where_found(const Observation& observation) {
-  const bool moved =
+/// A robot that was located anew, or whose map has moved, may have jumped: what behaviours remember
+/// lies elsewhere.
+void Pipeline::notice_jump(const Observation& observation) {
+  const bool found =
       map_pose_ && observation.map_pose && map_pose_->epoch != observation.map_pose->epoch;
   map_pose_ = observation.map_pose;
-  if (!moved) return;
-  coordinator_.reset(observation.odometry.pose);
+  if (!found && !observation.map_move) return;
+  if (found) {
+    coordinator_.reset(observation.odometry.pose);
+  } else {
+    coordinator_.move(*observation.map_move, observation.odometry.pose);
+  }
   sensing_.reset();
 }
 

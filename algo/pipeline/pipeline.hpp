@@ -77,7 +77,7 @@ class Pipeline {
   std::optional<std::string> refusal_of(const SetHandGoal& hand) const;
   void apply(const Request& request);
   void notice_ramp(const Request& edit);
-  void begin_anew_where_found(const Observation& observation);
+  void notice_jump(const Observation& observation);
   void sense(Telemetry& t);
   void sense_sonar(Telemetry& t);
   void sequence(Telemetry& t);

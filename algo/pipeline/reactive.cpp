@@ -115,8 +115,17 @@ void ManualBehaviour::reset(const Pose2& start_W) {
 }
 
 void BehaviourCoordinator::reset(const Pose2& start_W) {
+  for (Slot& slot : slots_) slot.behaviour->reset(start_W);
+  sample_anew();
+}
+
+void BehaviourCoordinator::move(const MapMove& move, const Pose2& here_W) {
+  for (Slot& slot : slots_) slot.behaviour->move(move, here_W);
+  sample_anew();
+}
+
+void BehaviourCoordinator::sample_anew() {
   for (Slot& slot : slots_) {
-    slot.behaviour->reset(start_W);
     slot.held = {};
     slot.age = std::numeric_limits<double>::infinity();
   }

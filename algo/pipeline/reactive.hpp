@@ -57,6 +57,8 @@ class Behaviour {
   /// [s] Time between samples; the proposal is held in between. 0: every tick.
   virtual double period() const { return 0; }
   virtual void reset(const Pose2& start_W) = 0;
+  /// As Controller::move().
+  virtual void move(const MapMove& /*move*/, const Pose2& here_W) { reset(here_W); }
   /// `output` is drawn by the page and kept by the record; only AvoidBehaviour fills it.
   virtual Proposal propose(const Resource& resource, ControlOutput& output) = 0;
 };
@@ -70,6 +72,7 @@ class AvoidBehaviour final : public Behaviour {
   void begin(const RunFacts& run) { controller_->begin(run); }
   Name name() const override { return behaviours::kAvoid; }
   void reset(const Pose2& start_W) override { controller_->reset(start_W); }
+  void move(const MapMove& move, const Pose2& here_W) override { controller_->move(move, here_W); }
   Proposal propose(const Resource& resource, ControlOutput& output) override;
   /// The motion to a goal that a driver's stick pulls along.
   Twist2 follow(const Resource& in, const SetGoal& pulled, ControlOutput& output);
@@ -131,6 +134,7 @@ class BehaviourCoordinator {
     slots_.push_back({.behaviour = std::move(behaviour)});
   }
   void reset(const Pose2& start_W);
+  void move(const MapMove& move, const Pose2& here_W);
   Decision decide(const Resource& resource, ControlOutput& output);
 
  private:
@@ -139,6 +143,8 @@ class BehaviourCoordinator {
     Proposal held{};
     double age = std::numeric_limits<double>::infinity();  // [s] since its last sample
   };
+  void sample_anew();
+
   std::vector<Slot> slots_{};
 };
 

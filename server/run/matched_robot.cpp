@@ -1,6 +1,8 @@
 // server/run/matched_robot.cpp: wheels and scans in, the corrected pose out.
 #include "server/run/matched_robot.hpp"
 
+#include <utility>
+
 #include "algo/perceive.hpp"
 
 namespace server {
@@ -31,7 +33,8 @@ void MatchedRobot::correct(algo::Observation& observation) {
       if (scan->status[i] != algo::Beam::Ok) continue;
       points_R_.push_back(algo::to_child(scanned, trail_.points_W()[i]));
     }
-    odometry_.take(points_R_, scan->mount_R.position(), scanned);
+    auto moved = odometry_.take(points_R_, scan->mount_R.position(), scanned);
+    if (moved) observation.map_move = std::make_shared<const algo::MapMove>(*std::move(moved));
   }
   observation.odometry.pose = odometry_.pose_W(wheels);
 }

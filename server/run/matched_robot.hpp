@@ -13,8 +13,9 @@
 namespace server {
 
 /// Stands between a run and any robot with a scanner that looks ahead, and puts the pose by matched
-/// scans into the odometry of each observation. Pipeline and record see nothing but this
-/// observation, so a replay needs no matcher.
+/// scans into the odometry of each observation, and the move of the map where a loop is closed.
+/// The pipeline sees nothing but this observation. The record does not keep the moves yet, so a run
+/// that closed a loop is not replayed to the same commands.
 class MatchedRobot final : public ForwardingRobot {
  public:
   explicit MatchedRobot(std::shared_ptr<algo::Robot> robot) : ForwardingRobot(std::move(robot)) {}

@@ -247,4 +247,32 @@ TEST(BuildingMemory, AGapThatIsTooNarrowIsShutFromAfarToo) {
   }
 }
 
+/// The map of a way that turned out to lie 0.6 m farther north.
+algo::MapMove moved_north() {
+  algo::MapMove move;
+  move.stations = {{{0, 0, 0}, {0, 0.6, 0}}, {{10, 0, 0}, {10, 0.6, 0}}};
+  for (double x = 0; x < 10; x += 0.05) {
+    move.walls_W.emplace_back(static_cast<float>(x + 0.02), 1.62F);
+  }
+  for (int column = 0; column < 50; ++column) {
+    move.seen.push_back({.column = column, .row = 3, .beams = 9});
+  }
+  return move;
+}
+
+TEST(BuildingMemory, TakesTheMapAfterAMoveForAllThatItSaw) {
+  BuildingMemory memory;
+  memory.look(free_sweep(), {0, 0.1, 0});
+  memory.drive({5, 0.1});
+  memory.draw(moved_north());
+  EXPECT_FALSE(memory.seen(cell(5, -3)));
+  EXPECT_EQ(memory.crossings(cell(5, 0.7)), 9);
+  EXPECT_TRUE(memory.driven(cell(5, 0.7)));
+  EXPECT_FALSE(memory.driven(cell(5, 0.1)));
+  const BuildingMemory::Tile* const tile = memory.find(3, 1);
+  ASSERT_NE(tile, nullptr);
+  EXPECT_EQ(tile->occupied[0], 0xffffffffU);  // from y = 1.6 m on
+  EXPECT_EQ(tile->occupied[1], 0U);
+}
+
 }  // namespace

@@ -296,4 +296,43 @@ TEST(FullStrip, PassesAPostOnItsLine) {
   EXPECT_GT(nearest, 0.02);
 }
 
+/// The loop that the robot has closed moves it and its map 0.6 m aside. Where its own map shows a
+/// wall across the way, there is none.
+TEST(FullStrip, DrivesOnByTheMapAfterAMove) {
+  Drive drive;
+  drive.world.circles = {{{3, 1}, 0.1}, {{3, -1}, 0.1}};
+  const Vec2 goal(6, 0);
+  for (int k = 0; k < 60; ++k) drive.tick(goal);
+  ASSERT_GT(drive.pose.x, 0.5);
+  algo::MapMove move{.from_W = drive.pose};
+  drive.pose.y += 0.6;
+  for (worlds::Circle& post : drive.world.circles) post.centre.y() += 0.6;
+  move.to_W = drive.pose;
+  move.stations = {{{0, 0, 0}, {0, 0.6, 0}}};
+  for (const worlds::Circle& post : drive.world.circles) {
+    move.walls_W.emplace_back(post.centre.cast<float>() - Eigen::Vector2f(0.1F, 0));
+  }
+  drive.controller.move(move, drive.pose);
+  drive.tick(goal);
+  const algo::LocalMap& map = drive.controller.senses().map();
+  EXPECT_LT(map.distance({2.9, 1.6}), 0.1);
+  EXPECT_GT(map.distance({2.9, 1}), 0.4) << "it lies there no more";
+  const auto driven = [&](double y) {
+    return drive.controller.senses().memory().driven(algo::BuildingMemory::cell_of({0.3, y}));
+  };
+  EXPECT_TRUE(driven(0.5) || driven(0.7));
+  EXPECT_FALSE(driven(-0.1) || driven(0.1));
+  for (int k = 0; k < 400 && (drive.pose.position() - goal).norm() > 0.2; ++k) drive.tick(goal);
+  EXPECT_LT((drive.pose.position() - goal).norm(), 0.2);
+}
+
+TEST(FullStrip, ForgetsAllInAMoveBeforeItsFirstTick) {
+  algo::FullStripController controller;
+  algo::MapMove move;
+  move.stations.emplace_back();
+  move.walls_W.emplace_back(1.0F, 0.0F);
+  controller.move(move, {});
+  EXPECT_EQ(controller.senses().map().distance({1, 0}), algo::LocalMap::kReach);
+}
+
 }  // namespace

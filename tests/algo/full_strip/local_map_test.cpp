@@ -1,6 +1,7 @@
 // tests/algo/full_strip/local_map_test.cpp: occupied and freed cells, and distances.
 #include "algo/full_strip/local_map.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -207,6 +208,31 @@ TEST(LocalMap, ErasesNearAPoint) {
     see(map, empty, {0, 0, 0});
     see(fresh, empty, {0, 0, 0});
     EXPECT_NEAR(static_cast<double>(occupied(map)), static_cast<double>(occupied(fresh)), 8);
+  }
+}
+
+TEST(LocalMap, DrawsTheWallsOfAMapInPlaceOfItsOwn) {
+  LocalMap map;
+  see(map, post(2, 0, 0.3), {0, 0, 0}, 3);
+  const std::vector<Eigen::Vector2f> walls_W{{1.51F, 0.02F}, {500, 0}};
+  map.draw({0, 0}, walls_W);
+  EXPECT_EQ(occupied(map), 1U);
+  EXPECT_NEAR(map.distance({1, 0}), 0.5, 0.05);
+  map.each_near({1.5, 0}, 0.2, [](const Vec2& p_W) {
+    EXPECT_NEAR(p_W.x(), 1.51, 1e-5);
+    EXPECT_NEAR(p_W.y(), 0.02, 1e-5);
+  });
+}
+
+TEST(LocalMap, ItsWindowsOverAMemoryCoverAllOfIt) {
+  algo::BuildingMemory memory;
+  for (const Vec2& p_W : {Vec2(-31, 4), Vec2(47, -22)}) memory.drive(p_W);
+  const std::vector<Vec2> middles_W = LocalMap::windows_over(memory);
+  constexpr double kHalf = LocalMap::kInner * algo::BuildingMemory::kTileEdge / 2;
+  for (const Vec2& p_W : {Vec2(-31, 4), Vec2(47, -22), Vec2(0, 0)}) {
+    EXPECT_TRUE(std::ranges::any_of(middles_W, [&](const Vec2& middle_W) {
+      return (p_W - middle_W).cwiseAbs().maxCoeff() <= kHalf;
+    })) << p_W.transpose();
   }
 }
 

@@ -1,6 +1,8 @@
 // tests/algo/full_strip/seen_space_test.cpp: which space counts as seen.
 #include "algo/full_strip/seen_space.hpp"
 
+#include <numbers>
+
 #include "tests/algo/worlds.hpp"
 #include <gtest/gtest.h>
 
@@ -85,6 +87,17 @@ TEST(SeenSpace, ARectangleTurnsAtItsStartAndThenInSeenSpace) {
   }
   EXPECT_TRUE(hull.enters_unseen(seen, {-0.2, 0, 0}, {-0.3, 0}));
   EXPECT_TRUE(hull.enters_unseen(seen, {0.5, 0, 0}, {0, 1}));
+}
+
+TEST(SeenSpace, MovesWithTheRobot) {
+  SeenSpace seen;
+  look(seen, {{{{1, 0}, 0.2}}, {}}, {0, 0, 0});
+  algo::MapMove move{.from_W = {0, 0, 0}, .to_W = {2, 1, std::numbers::pi / 2}};
+  seen.move(move);
+  EXPECT_TRUE(seen.seen({2, 1.5}));
+  EXPECT_FALSE(seen.seen({2, 2}));    // in the post
+  EXPECT_FALSE(seen.seen({2, 0.8}));  // behind the scanner
+  EXPECT_FALSE(seen.seen({0.5, 0}));
 }
 
 }  // namespace

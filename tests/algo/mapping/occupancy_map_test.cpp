@@ -1,6 +1,7 @@
 // tests/algo/mapping/occupancy_map_test.cpp: the effect of beams on cells.
 #include "algo/mapping/occupancy_map.hpp"
 
+#include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -126,6 +127,56 @@ TEST(OccupancyMap, AScanTellsHowItsWallsFace) {
   map.insert(beam(2.05), {0, 0.05, 0}, 8);
   EXPECT_TRUE(faces(map, {-1, 0}));
   EXPECT_FALSE(faces(map, {1, 0}));
+}
+
+TEST(OccupancyMap, MovesEachCellWithTheStationItWasSeenFrom) {
+  OccupancyMap map(0.1);
+  map.set_station(0);
+  for (int k = 0; k < 3; ++k) map.insert({0, 0.01}, {1.05, 0.01}, {Vec2(-1, 0), true});
+  map.set_station(1);
+  for (int k = 0; k < 3; ++k) map.insert({10, 0.01}, {11.05, 0.01}, {Vec2(-1, 0), true});
+  const std::vector<algo::StationMove> moves{{{0, 0, 0}, {0, 0, 0}},
+                                             {{10, 0, 0}, {10, 0.5, std::numbers::pi / 2}}};
+  const OccupancyMap moved = map.moved(moves);
+  EXPECT_EQ(ahead(moved, 1.05).hits, 3);
+  EXPECT_EQ(ahead(moved, 0.55).passes, 3);
+  EXPECT_FALSE(ahead(moved, 11.05).known());
+  const OccupancyMap::Tally turned = moved.at(moved.cell_of({9.99, 1.55}));
+  EXPECT_EQ(turned.hits, 3);
+  EXPECT_LT(turned.facing().side.y(), -0.9);
+  EXPECT_EQ(turned.station, 1);
+}
+
+TEST(OccupancyMap, AWallThatMovesKeepsItsCell) {
+  OccupancyMap map(0.1);
+  for (int k = 0; k < 2; ++k) map.insert({0, 0.01}, {1.02, 0.01});
+  for (int k = 0; k < 50; ++k) map.insert({0, 0.01}, {0.92, 0.55});  // passes beside it
+  const std::vector<algo::StationMove> moves{{{0, 0, 0}, {0.04, 0, 0.02}}};
+  std::size_t walls = 0;
+  map.moved(moves).each_cell([&](const OccupancyMap::Index&, const OccupancyMap::Tally& tally) {
+    walls += tally.occupied() ? 1U : 0U;
+  });
+  EXPECT_EQ(walls, 2U);
+}
+
+TEST(OccupancyMap, AddsWhatAnotherMapCounted) {
+  OccupancyMap map(0.1);
+  OccupancyMap other(0.1);
+  for (int k = 0; k < 3; ++k) map.insert(beam(1.02), {0, 0.01, 0}, 8);
+  other.insert(beam(1.06), {0, 0.01, 0}, 8);
+  map.add(other);
+  const OccupancyMap::Tally sum = ahead(map, 1.05);
+  EXPECT_EQ(sum.hits, 4);
+  EXPECT_NEAR(map.mean_W(map.cell_of({1.05, 0.01}), sum).x(), 1.03, 1e-6);
+  EXPECT_EQ(ahead(map, 0.55).passes, 4);
+}
+
+TEST(OccupancyMap, SeesAsFarAsTheNextWall) {
+  OccupancyMap map(0.1);
+  map.mark_wall({1, 0.01});
+  EXPECT_TRUE(map.sees({0, 0.01}, {0.9, 0.01}));
+  EXPECT_FALSE(map.sees({0, 0.01}, {2, 0.01}));
+  EXPECT_TRUE(map.sees({0, 0.5}, {2, 0.5}));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "tests/algo/worlds.hpp"
@@ -35,6 +36,45 @@ inline worlds::World room_in_hall() {
   add({-3.1, -3}, {-3, 3});
   add({3, -3}, {3.1, 3});
   return world;
+}
+
+/// A corridor 2 m wide around a block of 36 x 36 m about the origin, with a niche in each side of
+/// the block.
+inline worlds::World ring() {
+  worlds::World world;
+  std::vector<algo::Vec2> block;
+  for (int side = 0; side < 4; ++side) {
+    const algo::Pose2 turned{0, 0, side * std::numbers::pi / 2};
+    const double niche = -12 + 7.0 * side;
+    for (const algo::Vec2& p : {algo::Vec2(-18, -18),
+                                algo::Vec2(niche, -18),
+                                algo::Vec2(niche, -16.5),
+                                algo::Vec2(niche + 1.5, -16.5),
+                                algo::Vec2(niche + 1.5, -18)}) {
+      block.push_back(to_parent(turned, p));
+    }
+  }
+  world.polygons = {block, {{-20, -20}, {20, -20}, {20, 20}, {-20, 20}}};
+  return world;
+}
+
+/// Around ring() in the middle of its corridor, from the middle of its south side to 16 m past it.
+inline std::vector<algo::Pose2> around_ring() {
+  constexpr double kHalf = 19;  // [m] of a side
+  constexpr int kSteps = 380;
+  constexpr int kTurns = 16;
+  std::vector<algo::Pose2> path_W;
+  for (int side = 0; side <= 4; ++side) {
+    const algo::Pose2 turned{0, 0, side * std::numbers::pi / 2};
+    const int last = side == 4 ? kSteps / 2 + 160 : kSteps;
+    for (int k = side == 0 ? kSteps / 2 : 0; k <= last; ++k) {
+      path_W.push_back(compose(turned, {-kHalf + 2 * kHalf * k / kSteps, -kHalf, 0}));
+    }
+    for (int k = 1; side < 4 && k < kTurns; ++k) {
+      path_W.push_back(compose(turned, {kHalf, -kHalf, k * std::numbers::pi / (2 * kTurns)}));
+    }
+  }
+  return path_W;
 }
 
 inline algo::LaserScan scan_at(const algo::Pose2& pose_W, const worlds::World& world = room()) {

@@ -2,7 +2,10 @@
 #include "algo/pipeline/pipeline.hpp"
 
 #include <limits>
+#include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/algo/allocations.hpp"
 #include <gmock/gmock.h>
@@ -91,6 +94,45 @@ TEST_F(PipelineTest, ALostRobotRefusesGoalsAndKeepsTheOneItHad) {
   EXPECT_GT(tick().command.base.v, 0);
   EXPECT_EQ(t.mission, Mission::Driving);
   EXPECT_FALSE(pipeline.refusal(SetGoal{{1, 0}, std::nullopt}));
+}
+
+/// A controller that counts how often it was told to forget, and that its map moved.
+class Listening final : public Controller {
+ public:
+  Listening(int& resets, int& moves) : resets_(resets), moves_(moves) {}
+  void reset(const Pose2& /*start_W*/) override { ++resets_; }
+  void move(const MapMove& /*move*/, const Pose2& here_W) override {
+    EXPECT_EQ(here_W, Pose2({1, 2, 0}));
+    ++moves_;
+  }
+  void update(const ControlInput& /*in*/, const Parameters& /*p*/, ControlOutput& out) override {
+    out.clear();
+  }
+  void explain(const Telemetry& /*t*/, Explanation& /*words*/) const override {}
+
+ private:
+  int& resets_;
+  int& moves_;
+};
+
+TEST_F(PipelineTest, TellsTheControllerOnceThatTheMapHasMoved) {
+  int resets = 0;
+  int moves = 0;
+  std::vector<ControllerInfo> entries = builtin_controllers().entries();
+  for (ControllerInfo& entry : entries) {
+    entry.make = [&] { return std::make_unique<Listening>(resets, moves); };
+  }
+  Pipeline listening({}, disc(), ControllerCatalogue(std::move(entries)));
+  listening.reset({});
+  resets = 0;
+  listening.tick(t);
+  t.observation.odometry.pose = {1, 2, 0};
+  t.observation.map_move = std::make_shared<const MapMove>();
+  listening.tick(t);
+  t.observation.clear_sensors();
+  listening.tick(t);
+  EXPECT_EQ(moves, 1);
+  EXPECT_EQ(resets, 0);
 }
 
 TEST_F(PipelineTest, APoseThatIsNoNumberIsRefused) {
