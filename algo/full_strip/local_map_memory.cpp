@@ -79,13 +79,14 @@ void LocalMap::draw(const Vec2& centre_W, std::span<const Eigen::Vector2f> walls
 }
 
 std::vector<Vec2> LocalMap::windows_over(const BuildingMemory& memory) {
-  constexpr double kApart = kInner * BuildingMemory::kTileEdge;
-  const Vec2 low_W = BuildingMemory::kCoarse * Vec2(memory.low().column, memory.low().row);
-  const Vec2 high_W = BuildingMemory::kCoarse * Vec2(memory.high().column, memory.high().row);
+  constexpr int kCells = kInner * BuildingMemory::kCoarseSide;  // coarse, along the inner tiles
+  const BuildingMemory::Cell low = memory.low();
+  const BuildingMemory::Cell high = memory.high();
   std::vector<Vec2> middles_W;
-  for (double y = low_W.y() + kApart / 2; y < high_W.y() + kApart / 2; y += kApart) {
-    for (double x = low_W.x() + kApart / 2; x < high_W.x() + kApart / 2; x += kApart) {
-      middles_W.emplace_back(x, y);
+  for (int row = low.row; row < high.row; row += kCells) {
+    for (int column = low.column; column < high.column; column += kCells) {
+      middles_W.emplace_back(BuildingMemory::kCoarse *
+                             Vec2(column + kCells / 2.0, row + kCells / 2.0));
     }
   }
   return middles_W;

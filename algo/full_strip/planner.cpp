@@ -34,6 +34,7 @@ constexpr std::size_t kMostEntries = 2'000'000;  // for the least lattice; then 
 constexpr double kLenientRoom = 0.2;  // [m] clearance of a narrow place that may be looked at,
 constexpr double kFromAfar = 0.05;    // [m] more beyond the local map
 constexpr float kUnsure = 30;         // [m per m] there
+constexpr double kDrivenRoom = 0.1;   // [m] clearance below which it is shut all the same
 constexpr float kDriven = 20;         // [m per m] in a narrow place that the robot has passed
 constexpr int kExactCost = 3;         // of the budget
 
@@ -175,9 +176,9 @@ float Planner::new_cost(const PlanWorld& world, Id id) {
   const StepCost& cost = options_.cost;
   if (d < cost.least) {
     if (near_robot(id)) return kLeaving;
-    if (d < kLenientRoom + (is_fine(id) ? 0 : kFromAfar)) return -1;
     // Where the robot has been, there is room: a scan of a jamb errs by more than what is left.
-    if (world.memory.driven(cell)) return kDriven;
+    if (d >= kDrivenRoom && world.memory.driven(cell)) return kDriven;
+    if (d < kLenientRoom + (is_fine(id) ? 0 : kFromAfar)) return -1;
     return options_.lenient && !world.memory.seen_near(cell) ? kUnsure : -1;
   }
   const double doubt = world.memory.doubtful(cell) ? StepCost::kDoubt : 0;
