@@ -17,7 +17,7 @@ struct StationMove {
   Pose2 from_W{};
   Pose2 to_W{};
   Vec2 moved(const Vec2& p_W) const { return to_parent(to_W, to_child(from_W, p_W)); }
-  double turn() const { return wrap_angle(to_W.heading - from_W.heading); }
+  double turn() const { return wrap_angle(to_W.heading - from_W.heading); }  // [rad]
 };
 
 /// A map drawn along a way is bent as the way was measured. Once the robot recognises a place, the

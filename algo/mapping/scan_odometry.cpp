@@ -27,11 +27,11 @@ bool is_wall(const OccupancyMap& map,
              const OccupancyMap::Index& at,
              const OccupancyMap::Tally& tally) {
   constexpr int kFewest = 3;  // hits
-  constexpr int kFewer = 4;   // times as many hits of a neighbour make it the wall
+  constexpr int kMore = 4;    // times as many hits of a neighbour: that one is the wall
   if (!tally.occupied() || tally.hits < kFewest) return false;
   for (int j = at.j - 1; j <= at.j + 1; ++j) {
     for (int i = at.i - 1; i <= at.i + 1; ++i) {
-      if (map.at({i, j}).hits > kFewer * tally.hits) return false;
+      if (map.at({i, j}).hits > kMore * tally.hits) return false;
     }
   }
   return true;
@@ -125,8 +125,13 @@ std::optional<MapMove> ScanOdometry::come_back(const Pose2& seen_W) {
   const Growing& older = growing_.front();
   const Pose2 off = pose_step(pose_W, seen_W);
   const bool jumps = off.position().norm() >= kJump || std::abs(off.heading) >= kJumpTurn;
+  const bool tied = stations_.recognise(pose_W, seen_W, older.first, map_);
+  if (jumps && !tied) {  // to be matched to the old map, its pose would be too far off
+    loop_watch_.reset();
+    return std::nullopt;
+  }
   std::optional<MapMove> move;
-  if (stations_.recognise(pose_W, seen_W, older.first, map_) && jumps) move = close_loop();
+  if (jumps) move = close_loop();
   map_.add(older.map);
   growing_.clear();
   if (move) draw(*move);

@@ -42,7 +42,6 @@ class StationGraph {
 
   /// The station passed last.
   std::size_t here() const { return here_; }
-  const Pose2& pose_W(std::size_t station) const { return graph_.pose(station); }
   std::size_t size() const { return graph_.size(); }
 
  private:

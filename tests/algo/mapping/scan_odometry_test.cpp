@@ -116,10 +116,12 @@ TEST(ScanOdometry, NeedsNoMoreMemoryForMoreLaps) {
   Laps laps;
   for (int lap = 0; lap < 3; ++lap) laps.drive();
   const std::size_t bytes = laps.odometry().map().bytes();
+  const std::size_t stations = laps.odometry().stations();
   const std::size_t before = allocations::count();
   laps.drive();
   EXPECT_EQ(allocations::count(), before);
   EXPECT_EQ(laps.odometry().map().bytes(), bytes);
+  EXPECT_EQ(laps.odometry().stations(), stations);
 }
 
 TEST(ScanOdometry, FollowsTheWheelsWhereAScanMeetsNoWall) {
