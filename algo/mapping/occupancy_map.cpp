@@ -112,6 +112,15 @@ void OccupancyMap::add(const OccupancyMap& other) {
   });
 }
 
+void OccupancyMap::trace(const OccupancyMap& other, const Vec2& p_W, double reach) {
+  other.each_tally_near(p_W, reach, [&](const Vec2& wall_W, const Tally& tally) {
+    Tally once = tally;
+    once.hits = 1;
+    once.passes = 0;
+    add(cell_of(wall_W), once);
+  });
+}
+
 /// `tally`, its hits moved to `to_W` and turned.
 OccupancyMap::Tally OccupancyMap::moved(const Tally& tally, const Vec2& to_W, double turn) const {
   const Vec2 off = to_W - centre(cell_of(to_W));

@@ -65,6 +65,9 @@ class OccupancyMap {
 
   /// Adds what another map of the same cells counted.
   void add(const OccupancyMap& other);
+  /// Takes over the walls of another map of the same cells in the square of half edge `reach` [m]
+  /// about `p_W`, as if each had been hit once.
+  void trace(const OccupancyMap& other, const Vec2& p_W, double reach);
   /// The number of the station from which the next scans are taken, below kMostStations.
   void set_station(std::size_t station) { station_ = static_cast<std::uint16_t>(station); }
   static constexpr std::size_t kMostStations = 0x10000;

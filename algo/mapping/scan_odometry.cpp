@@ -105,6 +105,7 @@ std::optional<MapMove> ScanOdometry::go_on(double way) {
 
 void ScanOdometry::leave_known_ground() {
   growing_.push_back({OccupancyMap(settings_.cell), stations_.size() - 1});
+  growing_.front().map.trace(map_, place_.pose_M().position(), kGrown / 2);
   loop_watch_.reset();
 }
 

@@ -171,6 +171,21 @@ TEST(OccupancyMap, AddsWhatAnotherMapCounted) {
   EXPECT_EQ(ahead(map, 0.55).passes, 4);
 }
 
+TEST(OccupancyMap, TracesTheWallsOfAnotherAsIfHitOnce) {
+  OccupancyMap other(0.1);
+  other.set_station(5);
+  for (int k = 0; k < 3; ++k) other.insert(beam(1.02), {0, 0.01, 0}, 8);
+  OccupancyMap map(0.1);
+  map.trace(other, {0, 0}, 2);
+  EXPECT_EQ(ahead(map, 1.05).hits, 1);
+  EXPECT_EQ(ahead(map, 1.05).station, 5);
+  EXPECT_NEAR(map.mean_W(map.cell_of({1.05, 0.01}), ahead(map, 1.05)).x(), 1.02, 1e-6);
+  EXPECT_FALSE(ahead(map, 0.55).known());
+  OccupancyMap elsewhere(0.1);
+  elsewhere.trace(other, {5, 0}, 2);
+  EXPECT_EQ(elsewhere.bytes(), 0U);
+}
+
 TEST(OccupancyMap, SeesAsFarAsTheNextWall) {
   OccupancyMap map(0.1);
   map.mark_wall({1, 0.01});
