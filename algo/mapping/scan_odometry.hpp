@@ -23,10 +23,11 @@ namespace algo {
 /// their scale: over a few metres the pose must be as smooth as theirs, since a doorway beside the
 /// robot, out of its scanner's sight, is remembered in that frame.
 ///
-/// On new ground, scans are matched to the map of the last metres alone, and that map is added to
-/// the old one later. Once the scans fit the old map too, the robot is back on known ground. If it
-/// fits elsewhere than the way says, a loop is closed: the map moves, and the pose jumps. Unlike
-/// GraphMapper it keeps no scans, and moves the map as it is.
+/// On new ground, scans are matched to the map of the last metres alone, which begins with the
+/// known walls around, and that map is added to the old one later. Once the scans fit the old map
+/// too, the robot is back on known ground. If it fits elsewhere than the way says, a loop is
+/// closed: the map moves, and the pose jumps. Unlike GraphMapper it keeps no scans, and moves the
+/// map as it is.
 ///
 /// A scan is matched only to walls that face as its points do. With both faces of a thin wall in
 /// the map, the line through all points lies between them, or there is no line.
