@@ -46,6 +46,33 @@ two_suites() { run_node a spec; run_node b failing_tap; }
 expect "suites are summed" "5 passed, 1 failed, 1 skipped status 1" "$(sum_of two_suites)"
 expect "nothing at all" "0 passed, 0 failed status 1" "$(sum_of true)"
 
+# ---- the browser's suites: a suite that fails beside another one runs again alone ----
+# fake_browser FAILURES: the failed tests of the second run; the first run has one of four, in layout.mjs.
+# shellcheck disable=SC2317 # run_browser calls these functions through timeout
+fake_browser() {
+  fake=("$@")
+  mkdir -p tests/web && touch tests/web/{layout,world}.mjs
+  node() {
+    if [[ $2 == --test-concurrency=1 ]]; then
+      [[ "${*:3}" == /there/tests/web/layout.mjs ]] || return 3
+      tap $((2 - fake[0])) "${fake[0]}"
+      return $((fake[0] > 0))
+    fi
+    printf "not ok 1 - late\n  location: '/there/tests/web/layout.mjs:3:1'\n"
+    tap 3 1
+    return 1
+  }
+  root='' run_browser
+}
+expect "a late suite passes alone" "4 passed, 0 failed, 1 skipped status 0" "$(sum_of fake_browser 0)"
+expect "a suite fails alone too" "3 passed, 1 failed, 1 skipped status 1" "$(sum_of fake_browser 1)"
+# shellcheck disable=SC2317
+broken_browser() {
+  node() { broken; }
+  root='' run_browser
+}
+expect "no suite starts" "0 passed, 1 failed status 1" "$(sum_of broken_browser)"
+
 # ---- ctest: figures read from its report ----
 # fake_ctest TESTS FAILURES DISABLED SKIPPED STATUS
 fake_ctest() {
