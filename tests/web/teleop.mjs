@@ -50,6 +50,7 @@ async function hold_key(p, key) {
   });
   await until("on its way", 45, async () => {
     await p.page.keyboard.up(key);
+    await p.page.waitForTimeout(300); // the page sends that the key is up, or a held one would not go on
     await p.page.keyboard.down(key);
     return until("moving", 3, session, moves).then(() => ({ moves: true }), words);
   }, (now) => now.moves);
