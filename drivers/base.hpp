@@ -31,6 +31,7 @@ struct BaseState {
   bool stop_button = false;
   bool bumper_front = false;
   bool bumper_rear = false;
+  bool bumpers_unread = false;  // a bumper input is not reported, so it counts as hit
   bool stalled = false;
   bool over_current = false;
   bool faulty = false;

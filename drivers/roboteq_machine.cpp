@@ -192,12 +192,14 @@ std::array<T, 2> RoboteqMachine::by_side(const std::array<T, 2>& channels) const
 
 void RoboteqMachine::take_values(double now, const Reply& reply) {
   if (reply.name == "DI") {
+    const auto told = [&](int input) { return static_cast<std::size_t>(input) <= reply.count; };
     const auto hit = [&](int input) {
-      const auto i = static_cast<std::size_t>(input - 1);
-      return i >= reply.count || reply.values[i] != 0;
+      return !told(input) || reply.values[static_cast<std::size_t>(input) - 1] != 0;
     };
     bumper_front_ = std::ranges::any_of(setup_.bumper_inputs, hit);
     bumper_rear_ = std::ranges::any_of(setup_.rear_bumper_inputs, hit);
+    inputs_told_ = std::ranges::all_of(setup_.bumper_inputs, told) &&
+                   std::ranges::all_of(setup_.rear_bumper_inputs, told);
     inputs_at_ = now;
     return;
   }
@@ -276,6 +278,8 @@ void RoboteqMachine::judge(double now) {
   state_.faulty = must_stop(faults & static_cast<std::uint16_t>(~kStopFault));
   state_.volts = values_.battery_volts;
   const bool unread = now - inputs_at_ > kInputsAge;
+  const bool watched = !setup_.bumper_inputs.empty() || !setup_.rear_bumper_inputs.empty();
+  state_.bumpers_unread = watched && (unread || !inputs_told_);
   state_.bumper_front = !setup_.bumper_inputs.empty() && (bumper_front_ || unread);
   state_.bumper_rear = !setup_.rear_bumper_inputs.empty() && (bumper_rear_ || unread);
   state_.stalled = enabled_ && (stalls_[0] >= kAgreeing || stalls_[1] >= kAgreeing);

@@ -133,6 +133,7 @@ class RoboteqMachine final : public BaseMachine {
   double inputs_at_ = 0;      // [s] time of the newest bumper reading
   bool bumper_front_ = false;
   bool bumper_rear_ = false;
+  bool inputs_told_ = true;  // of all bumpers, by the newest reading
   std::uint64_t refused_ = 0;
   BaseState state_{};
 };

@@ -175,7 +175,10 @@ Halt SerialRobot::judge(const BaseState& base, double now) {
   }
   // The cause may be over when a person comes to look, so the sentence stays.
   if (bumper_hit(base, now)) {
-    disarm("The robot touched something: a bumper was hit. Look at it, then arm it again.");
+    disarm(base.bumpers_unread
+               ? "The base does not report its bumper inputs, so they count as hit. Check the "
+                 "controller and its wiring, then arm the robot again."
+               : "The robot touched something: a bumper was hit. Look at it, then arm it again.");
     armed = false;
   }
   // Its process may send again at any time, and the robot must not drive off by itself then.

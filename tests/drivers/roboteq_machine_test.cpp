@@ -311,9 +311,15 @@ TEST(RoboteqMachine, BumperThatCannotBeReadCountsAsHit) {
   f.device.inputs = "0:0:1";
   f.bench.run(0.3);
   EXPECT_TRUE(f.machine.state().bumper_front);
+  EXPECT_FALSE(f.machine.state().bumpers_unread);
   f.device.inputs = "0:0";
   f.bench.run(0.3);
   EXPECT_TRUE(f.machine.state().bumper_front);
+  EXPECT_TRUE(f.machine.state().bumpers_unread);
+  f.device.inputs = "0:0:0";
+  f.bench.run(0.3);
+  EXPECT_FALSE(f.machine.state().bumper_front);
+  EXPECT_FALSE(f.machine.state().bumpers_unread);
 }
 
 TEST(RoboteqMachine, RearBumpersAreNotReportedAsFrontBumpers) {

@@ -294,6 +294,18 @@ TEST(SerialRobot, BumperLatchesUntilArmingThenAllowsOnlyBackingOff) {
   EXPECT_FALSE(f.armed());
 }
 
+TEST(SerialRobot, SaysThatABumperIsNotReadInsteadOfHit) {
+  FakeRobot f;
+  f.arm();
+  f.base->now.bumper_front = true;
+  f.base->now.bumpers_unread = true;
+  f.step(0.05, 0.2);
+  EXPECT_FALSE(f.moves());
+  EXPECT_FALSE(f.armed());
+  EXPECT_THAT(f.robot->health().trouble, HasSubstr("does not report its bumper inputs"));
+  EXPECT_THAT(f.robot->health().trouble, Not(HasSubstr("touched")));
+}
+
 TEST(SerialRobot, LateCommandIsRejected) {
   FakeRobot f;
   f.arm();
