@@ -95,13 +95,15 @@ def fast_robot(folder, controller):
 
 
 def follow(server, devices, goal):
-    """Watches the way until its end; what the robot said on it, the least true room, and the truth."""
-    said, least = [], math.inf
+    """Watches the way until its end: the session, the truth, what the robot said, the least true room, and the last
+    time at which it touched nothing."""
+    said, least, clear = [], math.inf, time.monotonic()
     end = time.monotonic() + LATE
     while time.monotonic() < end:
         server.answer("POST", "/session/watch", {})
         session = server.answer("GET", "/session")
         truth = devices.truth()
+        clear = clear if truth["collided"] else truth["time"]
         least = min(least, truth["clearance"])
         words = session.get("what", "")
         if words and (not said or said[-1] != words):
@@ -109,14 +111,13 @@ def follow(server, devices, goal):
         if session.get("mission") == "arrived" or truth["collided"]:
             break
         time.sleep(0.05)
-    return session, truth, said, least
+    return session, truth, said, least, clear
 
 
-def speed_of(devices):
-    """[m/s] The true speed, from the record."""
-    now = time.monotonic()
-    poses = list(devices.lines("pose", now - 0.5, now))
-    return (poses[0][4] + poses[0][5]) / 2000 if poses else 0.0
+def speed_at(devices, when):
+    """[m/s] The true speed at the newest recorded pose before `when`; the record has ten a second."""
+    poses = list(devices.lines("pose", when - 0.5, when))
+    return (poses[-1][4] + poses[-1][5]) / 2000 if poses else 0.0
 
 
 def drive(name, obstacles, goal, waits, controller):
@@ -127,9 +128,9 @@ def drive(name, obstacles, goal, waits, controller):
             server.arm()
             begin = time.monotonic()
             server.answer("PUT", "/session/goal", {"x": goal[0], "y": goal[1]})
-            session, truth, said, least = follow(server, devices, goal)
+            session, truth, said, least, clear = follow(server, devices, goal)
             took = time.monotonic() - begin
-            speed = speed_of(devices)
+            speed = speed_at(devices, clear)
         finally:
             server.end()
             devices.end()
