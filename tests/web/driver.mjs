@@ -91,10 +91,9 @@ for (const round_trip of [100, 300, 450]) {
     await afresh();
     const p = await seat(true);
     await until("the link is measured", 20, () => p.get("link-quality").textContent(), (t) => /\d+ ms to and fro/.test(t));
-    await p.page.keyboard.down("w");
     // A busy machine may add what makes 450 ms too slow; then it must say so, and stand.
     const quality = () => p.get("link-quality").textContent();
-    const { too_slow } = await until("on its way, or too slow", 15,
+    const { too_slow } = await p.hold_key("w",
       async () => ({ v: (await session()).command.v, too_slow: round_trip > 400 && /only Stop/.test(await quality()) }),
       (now) => now.v > 0.05 || now.too_slow);
     if (!too_slow) await until("at rest before the wall", 40, session, (s) => s.command.v < 0.005);

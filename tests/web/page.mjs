@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { mkdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
-import { repository, require } from "./program.mjs";
+import { repository, require, until } from "./program.mjs";
 
 const { chromium } = require("playwright-core");
 const axe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
@@ -85,6 +85,18 @@ export async function open(browser, base, { size = desktop, theme = usual_theme,
     /** Waits until the scene shows `tick`. */
     async draws(tick) {
       await page.waitForFunction(([e, t]) => e.dataset.tick === t, [await get("scene").elementHandle(), String(tick)], { timeout: 40_000 });
+    },
+    /**
+     * Holds a key until what `ask` gives is `good`; presses it again, as a person would, when the page was too busy to
+     * take it. An error holds the `words` too.
+     */
+    hold_key(key, ask, good, words = async () => ({})) {
+      return until(`the effect of ${key}`, 45, async () => {
+        await page.keyboard.up(key);
+        await page.waitForTimeout(300); // the page sends that the key is up, or a held one would not go on
+        await page.keyboard.down(key);
+        return until("taken", 3, ask, good).catch(async () => ({ ...await words(), ...await ask() }));
+      }, good);
     },
     async drag(from, to) {
       await page.mouse.move(from.x, from.y);

@@ -38,23 +38,11 @@ async function knob(p, forward, turn) {
   return { x: box.x + box.width / 2 - turn * unit, y: box.y + box.height / 2 - forward * unit };
 }
 
-/**
- * Holds a key until the robot moves; presses it again, as a person would, when the page was too busy to take it.
- * When it never moves, the error holds the page's own words on the reason.
- */
-async function hold_key(p, key) {
-  const words = async () => ({
-    moves: false,
-    reason: await p.get("teleop-reason").textContent(),
-    driver: await p.get("who-drives").textContent(),
-  });
-  await until("on its way", 45, async () => {
-    await p.page.keyboard.up(key);
-    await p.page.waitForTimeout(300); // the page sends that the key is up, or a held one would not go on
-    await p.page.keyboard.down(key);
-    return until("moving", 3, session, moves).then(() => ({ moves: true }), words);
-  }, (now) => now.moves);
-}
+/** Holds a key until the robot moves. When it never moves, the error holds the page's own words on the reason. */
+const hold_key = (p, key) => p.hold_key(key, session, moves, async () => ({
+  reason: await p.get("teleop-reason").textContent(),
+  driver: await p.get("who-drives").textContent(),
+}));
 
 test("by mouse: it drives while the stick is held, and stops when it is let go", { timeout: 120_000 }, async () => {
   const p = await seat();
