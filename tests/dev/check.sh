@@ -60,16 +60,18 @@ verb_fmt() {
 # ---- sanitizers and fuzzing -----------------------------------------------------------------------
 
 # Long drives and heavy loads, whose code shorter tests run as well. A sanitizer would make minutes of each.
-long_tests=(AppTest.ABatchOfTenThousand\* ArmInverse.EveryBranch\* ArmRun.APersonWho\* ArmRun.TheHandFollows\*
-  ArmStudy.\* BodyFollower.Passes\* BodyStrip.TheArmYields\* BuildingStudy.RunsTheChosen\*
-  Buildings.{HaveEveryKind,ATimedDoor}\* Compare.TheBlindOne\* CrowdCrossing.{TheSame,SomebodyWho}\*
-  Determinism.SeveralRobots\* FilterStudy.RepeatsExactly\* FleetRobot.{EachRobot,SoItDoes,TheSameSpec}\*
-  GroundCourses.ARobotClimbs\* GroundCourses.TenDegrees\* GroundDrive.RefusesSteps\* LocateStudy.\* MapData.\*
-  MapPlan.{KeepsOut,ReachesAGoal}\* MapRobot.ReachesIts\*
+long_tests=(AppTest.ABatchOfTenThousand\* AppTest.BothRuns\* ArmInverse.EveryBranch\* ArmRun.APersonWho\*
+  ArmRun.TheHandFollows\* ArmStudy.\* BodyFollower.Passes\* BodyStrip.TheArmYields\*
+  Buildings.{HaveEveryKind,ATimedDoor}\* BuildingStudy.RunsTheChosen\* Compare.TheBlindOne\*
+  CrowdCrossing.{TheSame,SomebodyWho}\* Determinism.SeveralRobots\* FilterStudy.RepeatsExactly\*
+  FleetRobot.{EachRobot,SoItDoes,TheSameSpec}\* GroundCourses.ARobotClimbs\* GroundCourses.TenDegrees\*
+  GroundDrive.RefusesSteps\* LocateStudy.\* MapData.\* MapPlan.{KeepsOut,ReachesAGoal}\*
+  MapRobot.{IsRepeated,ReachesIts}\*
   MasudaStudy.{BandsCanFail,DocumentsName,DownwardSlopes,HasTheLines,PrintedRules}\* Operator.IsTheSame\*
-  PeopleRun.TheRobotCrosses\* Physics/RecordedSwap.\* ReachStudy.CountsEach\* RunListLoadTest.\*
+  PeopleRun.TheRobotCrosses\* Physics/RecordedSwap.\* ReachStudy.CountsEach\*
+  RobhazStudy.{AFailure,AFinding,EachRule,NoReading,RepeatsBit,TheConditions}\* RunListLoadTest.\*
   RunQueueTest.WaitingWorlds\* SlopeStudy.TheGuardKeeps\* TightPlaces.\* Tour.AShortOne\* TourStudy.HasARow\*
-  Turnover.BeginsWhere\*)
+  Turnover.BeginsWhere\* WheelWatch.TenHours\*)
 
 # build_sanitized NAME: sets `targets`, the tests that run under the sanitizer NAME, and builds them. ThreadSanitizer
 # has only the rooms that start threads; the others would only take time.

@@ -196,9 +196,12 @@ TEST_F(ExperimentsTest, IsReadWhileItsMemoryIsGivenBack) {
   ASSERT_TRUE(comes_to(experiment, ExperimentState::Finished));
   ASSERT_TRUE(comes([&] { return !experiment.at_work(); }));
   const std::jthread giver([&](const std::stop_token& stop) {
-    while (!stop.stop_requested()) experiment.unload();
+    while (!stop.stop_requested()) {
+      experiment.unload();
+      std::this_thread::sleep_for(std::chrono::microseconds(20));  // so that reads come between
+    }
   });
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < 100; ++i) {
     EXPECT_EQ(experiment.plan()->size(), 4U);
     experiment.look(
         [](const sweep::Plan&, const sweep::Rows& rows) { EXPECT_EQ(rows.size(), 4U); });
