@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kReachOfScan = 20;      // [m]
 constexpr std::size_t kLooks = 250'000;  // at points by a search, a call
+constexpr int kMostCalls = 100'000;      // of a whole search
 
 // A place found by a search.
 constexpr double kFoundDeviation = 0.2;       // [m]
@@ -54,10 +55,16 @@ constexpr int kWatchEvery = 10;             // scans
 constexpr double kSuddenLoss = 0.25;        // of fit: a poor check
 constexpr int kPoorHeld = 3;                // checks in a row: the place is not believed,
 constexpr int kPoorLost = 40;               // and given up
+constexpr double kAstray = 0.5;             // [m] of way in doubt between two looks about a place
 constexpr double kCarriedAway = 1;          // [m] between two odometry poses
 
 double way_of(const Pose2& step) {
   return step.position().norm() + std::abs(step.heading);
+}
+
+/// Of x, y and heading.
+Vec3 offset(const Pose2& from, const Pose2& to) {
+  return {to.x - from.x, to.y - from.y, wrap_angle(to.heading - from.heading)};
 }
 
 bool same_place(const Pose2& a, const Pose2& b) {
@@ -94,6 +101,11 @@ void PlaceFilter::follow(const Pose2& step) {
   way_ += way_of(moved);
 }
 
+void PlaceFilter::doubt(const Pose2& other_M) {
+  const Vec3 off = offset(pose_M_, other_M);
+  covariance_.topLeftCorner<3, 3>() += off * off.transpose();
+}
+
 bool PlaceFilter::due() const {
   return !matched_ || way_ >= kMatchEvery;
 }
@@ -110,9 +122,7 @@ void PlaceFilter::take(const ScanMatch& match, double fit, const Vec3& map_error
   matched_ = true;
   if (match.share < kLeastMatch) return;
   const Eigen::Matrix3d information = weakened(match_information(match), map_errors);
-  const Vec3 off(match.pose_W.x - pose_M_.x,
-                 match.pose_W.y - pose_M_.y,
-                 wrap_angle(match.pose_W.heading - pose_M_.heading));
+  const Vec3 off = offset(pose_M_, match.pose_W);
   const auto weight = [&]() -> Eigen::Matrix3d {
     return (Eigen::Matrix3d::Identity() + information * covariance()).inverse() * information;
   };
@@ -153,6 +163,7 @@ void MapLocalizer::place(const Pose2& guess_M) {
 void MapLocalizer::forget() {
   filters_.clear();
   given_M_.reset();
+  about_ = false;
   searching_ = false;
   wanted_ = true;
 }
@@ -173,8 +184,25 @@ void MapLocalizer::take(const LaserScan& scan, const Pose2& odometry_W) {
     return;
   }
   match_next();
-  watch();
+  watch(way_of(step));
   drop_worse();
+  astray_ = located_ ? kAstray : astray_ + way_of(step);
+  look_about();
+}
+
+void MapLocalizer::take_whole(const LaserScan& scan, const Pose2& odometry_W) {
+  take(scan, odometry_W);
+  for (int k = 0; k < kMostCalls && fix() == MapFix::Searching; ++k) take(scan, odometry_W);
+}
+
+/// A turn of poor wheels may take the pose out of the matcher's reach, and a wall out of the map.
+void MapLocalizer::look_about() {
+  if (located_ || filters_.size() != 1 || !compared_ || astray_ < kAstray) return;
+  astray_ = 0;
+  if (fit_at(best().pose_M()) >= kSureFit) return;
+  given_M_ = best().pose_M();
+  about_ = true;
+  wanted_ = true;
 }
 
 void MapLocalizer::begin_search(const Pose2& odometry_W) {
@@ -193,6 +221,13 @@ void MapLocalizer::end_search(const Pose2& odometry_W) {
   idle_ = 0;
   idle_scans_ = 0;
   const Pose2 since = pose_step(search_odometry_W_, odometry_W);
+  if (std::exchange(about_, false)) {
+    if (!better_found()) {
+      given_M_.reset();
+      return;
+    }
+    filters_.clear();
+  }
   if (given_M_) {
     take_places_about(*given_M_, since);
   } else {
@@ -210,6 +245,13 @@ void MapLocalizer::begin_places() {
   compared_ = false;
   believed_ = false;
   located_ = false;
+}
+
+/// About a place in doubt.
+bool MapLocalizer::better_found() const {
+  const auto found = search_.found();
+  return !found.empty() && found.front().score >= kSureFit &&
+         found.front().score > fit_at(best().pose_M());
 }
 
 void MapLocalizer::take_places(const Pose2& since) {
@@ -258,18 +300,28 @@ double MapLocalizer::fit_at(const Pose2& pose_M) const {
 void MapLocalizer::match_next() {
   for (std::size_t k = 0; k < filters_.size(); ++k) {
     PlaceFilter& filter = filters_[(next_ + k) % filters_.size()];
-    if (!filter.due()) continue;
-    const ScanMatch match = matcher_.match(map_, filter.pose_M(), kPlacePrior);
-    filter.take(match, fit_at(match.pose_W));
+    const double guessed = fit_at(filter.pose_M());
+    if (!filter.due() && guessed >= filter.fit() - kSuddenLoss) continue;
+    ScanMatch match = matcher_.match(map_, filter.pose_M(), kPlacePrior);
+    double fit = fit_at(match.pose_W);
+    if (fit < guessed) {  // drawn to a wrong wall
+      match = {.pose_W = filter.pose_M()};
+      fit = guessed;
+    }
+    if (fit > guessed + kSuddenLoss) filter.doubt(match.pose_W);
+    filter.take(match, fit);
     next_ = (next_ + k + 1) % filters_.size();
     return;
   }
 }
 
 /// A robot that stands can be carried off, or people can stand around it: no match is due then.
-void MapLocalizer::watch() {
-  if (filters_.size() != 1 || ++unwatched_ < kWatchEvery) return;
+void MapLocalizer::watch(double way) {
+  unwatched_way_ += way;
+  if (filters_.size() != 1) return;
+  if (++unwatched_ < kWatchEvery && unwatched_way_ < kMatchEvery) return;
   unwatched_ = 0;
+  unwatched_way_ = 0;
   const double least = std::max(kLostFit, best().fit() - kSuddenLoss);
   poor_ = fit_at(best().pose_M()) < least ? poor_ + 1 : 0;
   if (poor_ >= kPoorLost) forget();
@@ -287,6 +339,8 @@ void MapLocalizer::drop_worse() {
   }
   const bool first = !compared_;
   const bool nowhere = first && most_fit < kSureFit;
+  const std::optional<Pose2> only_M =
+      !first && filters_.size() == 1 ? std::optional(best().pose_M()) : std::nullopt;
   std::erase_if(filters_, [&](const PlaceFilter& filter) {
     return nowhere || filter.fit() < kLostFit || filter.merit() < most_merit - kLag ||
            (first && filter.fit() < most_fit - kAtOnce);
@@ -303,6 +357,7 @@ void MapLocalizer::drop_worse() {
   const auto best = std::ranges::max_element(filters_, {}, &PlaceFilter::merit);
   if (best != filters_.end()) std::swap(*best, filters_.front());
   if (filters_.empty()) {
+    given_M_ = only_M;  // it is near, or elsewhere
     wanted_ = given_ || !first;
   } else if (filters_.size() == 1) {
     believed_ = poor_ < kPoorHeld && filters_.front().fit() >= (believed_ ? kStillFit : kSureFit);

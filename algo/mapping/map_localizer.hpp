@@ -27,6 +27,8 @@ class PlaceFilter {
 
   /// Follows a step of the odometry.
   void follow(const Pose2& step);
+  /// The scan fits far better at `other_M`: the odometry was wrong by as much.
+  void doubt(const Pose2& other_M);
   /// Takes a match found from pose_M() on, of which the share `fit` of the points lies on walls.
   /// `map_errors`: the deviations [m], [m], [rad] of the map, which err alike in many matches in a
   /// row.
@@ -63,7 +65,8 @@ class PlaceFilter {
 /// Follows the robot on a map by matching its scans. It begins with a search: about the pose that
 /// somebody gave, else everywhere. All places that fit about equally are followed until the way
 /// tells them apart, so that between two corridors that look alike neither is believed. Where the
-/// scans cease to fit, the place is not believed; if that lasts, it searches anew.
+/// scans cease to fit, the place is not believed, and it looks about that place; if that lasts, it
+/// searches everywhere.
 ///
 /// Each call does a bounded piece of work and allocates nothing once the scans keep their size.
 /// The same input gives the same poses bit for bit.
@@ -84,6 +87,8 @@ class MapLocalizer {
   /// Takes a scan of a robot that was at the odometry pose `odometry_W` in the middle of its
   /// sweep.
   void take(const LaserScan& scan, const Pose2& odometry_W);
+  /// Likewise, and ends a search within this scan: for a log, which does not wait for it.
+  void take_whole(const LaserScan& scan, const Pose2& odometry_W);
 
   MapFix fix() const;
   bool located() const { return fix() == MapFix::Located; }
@@ -99,16 +104,18 @@ class MapLocalizer {
   static constexpr double kGivenTurn = 0.5;  // [rad]
 
  private:
+  void look_about();
   void begin_search(const Pose2& odometry_W);
   void end_search(const Pose2& odometry_W);
   void begin_places();
+  bool better_found() const;
   void take_places(const Pose2& since);
   void take_places_about(const Pose2& guess_M, const Pose2& since);
   bool connected(const Pose2& a_M, const Pose2& b_M) const;
   void match_next();
   double fit_at(const Pose2& pose_M) const;
   void drop_worse();
-  void watch();
+  void watch(double way);
   double deviation() const;
 
   Submap map_;
@@ -122,11 +129,14 @@ class MapLocalizer {
   bool believed_ = false;  // the only place fits,
   bool located_ = false;   // and is known well enough to drive by it
   bool searching_ = false;
-  bool wanted_ = true;  // a search
-  double idle_ = 0;     // [m] way since a search that found nothing of use
-  int idle_scans_ = 0;  // since then
-  int unwatched_ = 0;   // scans since the place was last checked
-  int poor_ = 0;        // checks in a row at which the scan did not fit
+  bool wanted_ = true;        // a search
+  double idle_ = 0;           // [m] way since a search that found nothing of use
+  int idle_scans_ = 0;        // since then
+  int unwatched_ = 0;         // scans since the place was last checked,
+  double unwatched_way_ = 0;  // [m] and way
+  int poor_ = 0;              // checks in a row at which the scan did not fit
+  double astray_ = 0;         // [m] way in doubt since a search about the place
+  bool about_ = false;        // the search is about the place, which stays if none is better
   std::optional<Pose2> odometry_W_{};
   Pose2 search_odometry_W_{};
 };

@@ -78,7 +78,7 @@ class OccupancyMap {
   bool sees(const Vec2& from_W, const Vec2& to_W) const;
 
   /// Makes the cell of `p_W` a wall, or free, as a map read from a file says.
-  void mark_wall(const Vec2& p_W) { hit(p_W); }
+  void mark_wall(const Vec2& p_W, const Facing& facing_W = {}) { face(hit(p_W), facing_W.side); }
   void mark_free(const Vec2& p_W);
 
   /// Calls `see(point_W)` for each occupied cell of the square of half edge `reach` [m] about

@@ -138,6 +138,28 @@ struct Raster {
   std::vector<MapCell> cells{};
 };
 
+/// The free cells that touch a wall.
+struct FreeBeside {
+  FreeBeside(const algo::OccupancyMap& map, const algo::OccupancyMap::Index& wall) {
+    for (int dj = -1; dj <= 1; ++dj) {
+      for (int di = -1; di <= 1; ++di) {
+        const auto beside = map.at({wall.i + di, wall.j + dj});
+        if (!beside.known() || beside.occupied()) continue;
+        ++cells;
+        sum += algo::Vec2(di, dj);
+      }
+    }
+  }
+  /// Towards them; unknown if they lie on both sides.
+  algo::Facing facing() const {
+    if (2 * sum.norm() < cells) return {};
+    return {sum.normalized(), false};
+  }
+
+  int cells = 0;
+  algo::Vec2 sum{0, 0};
+};
+
 }  // namespace
 
 algo::OccupancyMap map_from(const std::string& description,
@@ -184,17 +206,10 @@ algo::OccupancyMap map_from(const std::string& description,
 
 algo::Submap seen_walls(const algo::OccupancyMap& map) {
   algo::OccupancyMap seen(map.cell_edge());
-  const auto touches_free = [&map](const algo::OccupancyMap::Index& cell) {
-    for (int dj = -1; dj <= 1; ++dj) {
-      for (int di = -1; di <= 1; ++di) {
-        const auto beside = map.at({cell.i + di, cell.j + dj});
-        if (beside.known() && !beside.occupied()) return true;
-      }
-    }
-    return false;
-  };
   map.each_cell([&](const auto& cell, const auto& tally) {
-    if (tally.occupied() && touches_free(cell)) seen.mark_wall(map.mean_W(cell, tally));
+    if (!tally.occupied()) return;
+    const FreeBeside free(map, cell);
+    if (free.cells > 0) seen.mark_wall(map.mean_W(cell, tally), free.facing());
   });
   return algo::Submap(seen.tiles().empty() ? map : seen);
 }

@@ -34,8 +34,9 @@ std::shared_ptr<const KnownMap> known_map(const std::filesystem::path& yaml) {
 
 MapRobot::MapRobot(std::shared_ptr<algo::Robot> robot,
                    const KnownMap& map,
-                   const std::optional<algo::Pose2>& start_W)
-    : ForwardingRobot(std::move(robot)), localizer_(map.walls), start_W_(start_W) {}
+                   const std::optional<algo::Pose2>& start_W,
+                   Waits waits)
+    : ForwardingRobot(std::move(robot)), localizer_(map.walls), start_W_(start_W), waits_(waits) {}
 
 void MapRobot::reset(algo::Observation& observation) {
   ForwardingRobot::reset(observation);
@@ -71,7 +72,11 @@ void MapRobot::locate(algo::Observation& observation) {
   if (const algo::LaserScan* scan = algo::front_scan(observation)) {
     const algo::Pose2 robot_in_scanner = algo::pose_step(scan->mount_R, {});
     scanned_ = algo::compose(trail_.map(*scan), robot_in_scanner);
-    localizer_.take(*scan, *scanned_);
+    if (waits_ == Waits::Yes) {
+      localizer_.take(*scan, *scanned_);
+    } else {
+      localizer_.take_whole(*scan, *scanned_);
+    }
   }
   correct(observation);
 }

@@ -34,10 +34,13 @@ std::shared_ptr<const KnownMap> known_map(const std::filesystem::path& yaml);
 /// While the robot is not located, its pose goes on by the wheels alone, and the gate holds it.
 class MapRobot final : public ForwardingRobot, public algo::Locating {
  public:
-  /// `start_W`: the robot begins there, if that is known.
+  enum class Waits { Yes, No };
+  /// `start_W`: the robot begins there, if that is known. `waits`: it stands while its place is
+  /// searched for, unlike the robot of a log.
   MapRobot(std::shared_ptr<algo::Robot> robot,
            const KnownMap& map,
-           const std::optional<algo::Pose2>& start_W);
+           const std::optional<algo::Pose2>& start_W,
+           Waits waits = Waits::Yes);
 
   void reset(algo::Observation& observation) override;
   bool step(const algo::Command& command, algo::Observation& observation) override;
@@ -51,6 +54,7 @@ class MapRobot final : public ForwardingRobot, public algo::Locating {
 
   algo::MapLocalizer localizer_;
   std::optional<algo::Pose2> start_W_{};
+  Waits waits_;
   algo::ScanPoints trail_{};
   algo::Pose2 pose_W_{};                  // the newest one
   algo::Pose2 wheels_{};                  // the odometry then

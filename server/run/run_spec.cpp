@@ -248,7 +248,8 @@ std::unique_ptr<algo::Robot> make_robot(const RunSpec& spec) {
   if (!robot->spec().has_laser) {
     throw DocumentError("map", "needs a robot with a scanner that looks ahead");
   }
-  return std::make_unique<MapRobot>(std::move(robot), *spec.map, known_start(spec));
+  const auto waits = spec.scenario.log.empty() ? MapRobot::Waits::Yes : MapRobot::Waits::No;
+  return std::make_unique<MapRobot>(std::move(robot), *spec.map, known_start(spec), waits);
 }
 
 algo::PipelineConfig pipeline_config(const RunSpec& spec) {

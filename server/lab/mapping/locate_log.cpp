@@ -11,12 +11,6 @@
 #include "server/run/text_file.hpp"
 
 namespace server::mapping {
-namespace {
-
-constexpr int kMostCalls = 100'000;  // of one search
-
-}  // namespace
-
 std::optional<algo::Pose2> start_of(const std::string& text) {
   if (text.empty()) return std::nullopt;
   std::istringstream words(text);
@@ -39,10 +33,7 @@ LocatedLog locate_log(const Recording& log,
   if (start_M) localizer.place(*start_M);
   LocatedLog found;
   for (std::size_t i = 0; i < log.scans.size(); ++i) {
-    localizer.take(log.scans[i], log.path_W[i]);
-    for (int k = 0; k < kMostCalls && localizer.fix() == algo::MapFix::Searching; ++k) {
-      localizer.take(log.scans[i], log.path_W[i]);
-    }
+    localizer.take_whole(log.scans[i], log.path_W[i]);
     found.poses_M.emplace_back();
     if (!localizer.located()) continue;
     found.poses_M.back() = localizer.best().pose_M();

@@ -81,6 +81,46 @@ TEST(MapLocalizer, FollowsTheRobotOverOdometryThatIsOffBySixPercent) {
   EXPECT_NEAR(localizer.best().scale().turn, 1 / 1.06 - 1, 0.01);
 }
 
+/// Ten steps of 0.1 m forwards, of which the odometry tells the opposite.
+TEST(MapLocalizer, FollowsTheScansWhereTheOdometryTellsTheOppositeWay) {
+  MapLocalizer localizer(rooms_at({{0, 0}}));
+  const std::vector<Pose2> path_M = rooms::round_trip(300);
+  Pose2 odometry_W{};
+  localizer.start(path_M[0]);
+  for (std::size_t k = 1; k < path_M.size(); ++k) {
+    Pose2 step = algo::pose_step(path_M[k - 1], path_M[k]);
+    if (k >= 60 && k < 70) step = {-step.x, -step.y, step.heading};
+    odometry_W = algo::compose(odometry_W, step);
+    localizer.take(rooms::scan_at(path_M[k]), odometry_W);
+    EXPECT_TRUE(localizer.located()) << k << " " << localizer.sentence();
+    const double most = k >= 60 && k < 80 ? 0.3 : 0.06;
+    EXPECT_LT(distance(localizer.best().pose_M(), path_M[k]), most) << k;
+  }
+}
+
+/// The wheels see nothing of the way of a robot that is pushed, beyond the matcher's reach.
+TEST(MapLocalizer, LooksAboutThePlaceWhereTheScansCeaseToFit) {
+  MapLocalizer localizer(rooms_at({{0, 0}, {30, 0}}));
+  const std::vector<Pose2> path_M = rooms::round_trip(300);
+  constexpr std::size_t kPush = 10;
+  constexpr std::size_t kPushed = 25;
+  Pose2 odometry_W{};
+  localizer.start(path_M[0]);
+  int lost = 0;
+  for (std::size_t k = 1; k < path_M.size(); ++k) {
+    const bool pushed = k > kPush && k <= kPush + kPushed;
+    if (pushed) continue;
+    odometry_W = algo::compose(odometry_W, algo::pose_step(path_M[k - 1], path_M[k]));
+    localizer.take(rooms::scan_at(path_M[k]), odometry_W);
+    if (!localizer.located()) ++lost;
+  }
+  EXPECT_GT(lost, 0);
+  EXPECT_LT(lost, 30);
+  // Two rooms look alike: a search everywhere could not tell in which one the robot is.
+  ASSERT_TRUE(localizer.located()) << localizer.sentence();
+  EXPECT_LT(distance(localizer.best().pose_M(), path_M.back()), 0.06);
+}
+
 /// A corridor of 40 m without anything in it, and its scans as far as 8 m.
 LaserScan corridor_scan(const Pose2& pose) {
   worlds::World corridor;

@@ -91,6 +91,25 @@ TEST_F(MapFile, OnlyTheFacesOfThickWallsAreSeen) {
   EXPECT_EQ(seen_walls(bare).walls().size(), 20U);
 }
 
+/// Two rows of cells with free space on both sides.
+TEST_F(MapFile, TheTwoFacesOfAThinWallFaceApart) {
+  OccupancyMap map(0.05);
+  for (int i = 0; i < 40; ++i) {
+    for (const int j : {0, 1}) map.mark_wall(map.centre({i, j}));
+    for (const int j : {-2, -1, 2, 3}) map.mark_free(map.centre({i, j}));
+  }
+  const algo::Submap walls = seen_walls(map);
+  ASSERT_EQ(walls.walls().size(), 80U);
+  const algo::Facing up{{0, 1}, true};
+  const algo::Facing down{{0, -1}, true};
+  const algo::Vec2 upper = map.centre({20, 1});
+  const algo::Vec2 lower = map.centre({20, 0});
+  EXPECT_TRUE(walls.wall_within(upper, up, 0.01));
+  EXPECT_FALSE(walls.wall_within(upper, down, 0.01));
+  EXPECT_TRUE(walls.wall_within(lower, down, 0.01));
+  EXPECT_FALSE(walls.wall_within(lower, up, 0.01));
+}
+
 TEST_F(MapFile, BadFilesAreRefusedWithASentence) {
   const std::string good = "image: bad.pgm\nresolution: 0.5\norigin: [0, 0, 0]\n";
   const std::string picture = "P2\n1 1\n255\n0\n";
