@@ -81,7 +81,7 @@ class BaseGrid {
   Vec2 centre(GridCell c) const { return corner_ + cell_ * Vec2(c.column + 0.5, c.row + 0.5); }
   GridCell cell_of(const Vec2& p) const {
     const Vec2 at = (p - corner_) / cell_;
-    return {static_cast<int>(std::floor(at.x())), static_cast<int>(std::floor(at.y()))};
+    return {whole_below(at.x()), whole_below(at.y())};
   }
   /// The cell of `p`, or the nearest from which the straight way to it is free.
   std::optional<GridCell> cell_beside(const CostGrid& grid, const Vec2& p) const {

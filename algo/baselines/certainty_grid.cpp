@@ -56,8 +56,8 @@ void CertaintyGrid::for_each_in(const RangeSector& sector, Visit&& visit) const 
     const double way = std::max(0.0, sign * ((column + 0.5) * kCell - apex[u]));
     const double a = apex[v] + way * left[v] / std::abs(left[u]);
     const double b = apex[v] + way * right[v] / std::abs(right[u]);
-    const int from = static_cast<int>(std::floor(std::min(a, b) / kCell));
-    const int to = static_cast<int>(std::floor(std::max(a, b) / kCell));
+    const int from = whole_below(std::min(a, b) / kCell);
+    const int to = whole_below(std::max(a, b) / kCell);
     for (int row = from; row <= to; ++row) {
       const Cell cell = along_x ? Cell{column, row} : Cell{row, column};
       if (!cells_.covers(cell)) continue;

@@ -75,7 +75,7 @@ ParameterList Vfh::parameters() {
 
 int sector_of(double bearing) {
   const double turned = bearing < 0 ? bearing + 2 * std::numbers::pi : bearing;
-  return cyclic(static_cast<int>(std::floor(turned / kSectorWidth)));
+  return cyclic(whole_below(turned / kSectorWidth));
 }
 
 double sector_centre(int k) {

@@ -96,8 +96,8 @@ std::optional<FoundPose> LoopSearch::best(std::span<const Vec2> points,
     const Pose2 at{search.corner.x(), search.corner.y(), turned.heading};
     for (const Vec2& point : points) {
       const Vec2 off = walls_.cells_to(to_parent(at, point));
-      turned.columns.push_back(static_cast<int>(std::floor(off.x())));
-      turned.rows.push_back(static_cast<int>(std::floor(off.y())));
+      turned.columns.push_back(whole_below(off.x()));
+      turned.rows.push_back(whole_below(off.y()));
     }
   }
   constexpr std::size_t kTop = kLevels - 1;

@@ -102,8 +102,8 @@ void Submap::keep_free(const OccupancyMap& map) {
 }
 
 bool Submap::is_free(const Vec2& p) const {
-  const int column = static_cast<int>(std::floor(p.x() / block_)) - low_.i;
-  const int row = static_cast<int>(std::floor(p.y() / block_)) - low_.j;
+  const int column = whole_below(p.x() / block_) - low_.i;
+  const int row = whole_below(p.y() / block_) - low_.j;
   if (column < 0 || row < 0 || column >= free_columns_ || row >= free_rows_) return false;
   return free_[cell_index(column, row, free_columns_)];
 }

@@ -79,7 +79,7 @@ class Submap {
   }
   int column(double x) const { return std::clamp(bin(x - corner_.x()), 0, columns_ - 1); }
   int row(double y) const { return std::clamp(bin(y - corner_.y()), 0, rows_ - 1); }
-  static int bin(double way) { return static_cast<int>(std::floor(way / kBin)); }
+  static int bin(double way) { return whole_below(way / kBin); }
   std::size_t at(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
            static_cast<std::size_t>(column);

@@ -2,7 +2,6 @@
 #include "server/run/drawn_map.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
@@ -30,7 +29,7 @@ constexpr int kNearWall = 70;                    // [cm] nearer to a wall, a cel
 constexpr std::size_t kMostDrawn = 200'000'000;  // cells
 
 int drawn_cell(double metres) {
-  return static_cast<int>(std::floor(metres / DrawnSpace::kCell));
+  return algo::whole_below(metres / DrawnSpace::kCell);
 }
 
 /// Builds the cells of one map.
@@ -108,7 +107,7 @@ class Drawing {
   void occupy(const Vec2& p) {
     const double half = std::max(0.0, map_.cell_edge() - DistanceField::kCell) / 2;
     const auto fine = [](double metres) {
-      return static_cast<int>(std::floor(metres / DistanceField::kCell));
+      return algo::whole_below(metres / DistanceField::kCell);
     };
     const int right = std::min(fine(p.x() + half), DistanceField::kSize - 1);
     const int top = std::min(fine(p.y() + half), DistanceField::kSize - 1);

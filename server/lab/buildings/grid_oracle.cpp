@@ -2,7 +2,6 @@
 #include "server/lab/buildings/grid_oracle.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "server/lab/buildings/floor_plan.hpp"
 #include "sim/obstacle_set.hpp"
@@ -65,8 +64,8 @@ GridOracle::GridOracle(const std::vector<algo::Obstacle>& obstacles) {
 }
 
 GridCell GridOracle::cell_of(const Vec2& p_W) const {
-  return {static_cast<int>(std::floor((p_W.x() - corner_W_.x()) / kRaster)),
-          static_cast<int>(std::floor((p_W.y() - corner_W_.y()) / kRaster))};
+  return {algo::whole_below((p_W.x() - corner_W_.x()) / kRaster),
+          algo::whole_below((p_W.y() - corner_W_.y()) / kRaster)};
 }
 
 Vec2 GridOracle::middle_W(GridCell c) const {

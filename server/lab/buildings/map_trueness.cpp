@@ -101,8 +101,7 @@ std::vector<Vec2> remembered_walls(const algo::StripSenses& senses) {
 }
 
 MapPieces::Place MapPieces::place_of(const Vec2& p_W) {
-  return {static_cast<int>(std::floor(p_W.x() / kPiece)),
-          static_cast<int>(std::floor(p_W.y() / kPiece))};
+  return {algo::whole_below(p_W.x() / kPiece), algo::whole_below(p_W.y() / kPiece)};
 }
 
 void MapPieces::visit(const Pose2& believed_W, const Pose2& true_W) {

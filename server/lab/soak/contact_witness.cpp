@@ -31,7 +31,7 @@ constexpr std::size_t kRecent = 4;      // of which the last give the robot's mo
 constexpr double kRimApart = 0.01;      // [m]
 
 int cell_of(double metres) {
-  return static_cast<int>(std::floor(metres / kPatch)) + kPatches / 2;
+  return algo::whole_below(metres / kPatch) + kPatches / 2;
 }
 
 std::vector<algo::Vec2> rim_of(const sim::Hull& hull) {

@@ -112,9 +112,7 @@ bool reachable(const sim::Scenario& scenario,
   const auto centre_W = [&](int x, int y) {
     return algo::Vec2(-kHalf - kMargin + (x + 0.5) * kCell, -kHalf - kMargin + (y + 0.5) * kCell);
   };
-  const auto cell_of = [](double p) {
-    return static_cast<int>(std::floor((p + kHalf + kMargin) / kCell));
-  };
+  const auto cell_of = [](double p) { return algo::whole_below((p + kHalf + kMargin) / kCell); };
   std::vector<std::uint8_t> seen(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
   std::vector<std::array<int, 2>> open{{cell_of(from_W.x()), cell_of(from_W.y())}};
   while (!open.empty()) {
