@@ -46,6 +46,8 @@ test("a file that holds no such lines says where", () => {
   fault("0 1 0 0\n0 2 5 5\n", /nobody in it walks/);
   fault("0 1 0 0\n10 1 1 1\n", /stay within 1.0 x 1.0 m; a crossing needs 2 m/);
   fault(Array.from({ length: 2001 }, (_, i) => `0 ${i} ${i} 9\n10 ${i} ${i} 20\n`).join(""), /holds 2001 people; a world holds 2000/);
+  fault(`${kSquare}1e9 7 5 5\n`, /square.txt lasts 39999996 s, from frame 100 to frame 1000000000 of person 7; a world holds 999995 s/);
+  fault(`${kSquare}200 7 5 5\n200.01 7 5 6\n`, /square.txt: frames 200 and 200.01 of person 7 fall on one millisecond/);
   const long = Array.from({ length: 10_001 }, (_, i) => `${i} 7 5 5\n`).join("");
   fault(kSquare + long, /square.txt: person 7 is in 10001 frames; a world holds 10000 of one person/);
 });

@@ -62,9 +62,9 @@ std::vector<algo::ObstaclePath::Key> ordered(std::vector<PeopleLine> lines,
       if (keys.back().position_W == line.key.position_W) continue;
       refuse_line(name,
                   line.number,
-                  fmt::format("person {} is at another place in frame {:.10g} than in line {}",
+                  fmt::format("person {} is at another place in frame {} than in line {}",
                               id,
-                              line.key.time / kFrameTime,
+                              frame_at(line.key.time),
                               last));
     }
     keys.push_back(line.key);
@@ -96,6 +96,10 @@ algo::Vec2 Walker::at(double time) const {
   const auto& last = *std::prev(next);
   const double share = (time - last.time) / (next->time - last.time);
   return last.position_W + share * (next->position_W - last.position_W);
+}
+
+std::string frame_at(double time) {
+  return fmt::format("{:.10g}", time / kFrameTime);
 }
 
 Recording read_people(std::istream& lines, const std::string& name) {

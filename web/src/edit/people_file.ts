@@ -11,6 +11,7 @@ const kPersonHeight = 1.7;       // [m]
 const kFarthest = 1e4;           // [m] of a place from the origin
 const kLastFrame = 1e9;          // of a recording
 const kMostKeys = 10_000;        // of a path
+const kLongestPath = 1e6;        // [s]
 const kEdge = 0.5;               // [m] of start and goal inside the rectangle of all places
 const kLeftOut = 1.5;            // [m] from the robot's start within which nobody stands
 const kUntilAgain = 5;           // [s] from the end of the recording until it begins anew
@@ -75,13 +76,12 @@ export function world_of_people(walkers: Walker[], file: string, robot: Scenario
   const [from, until] = span_of(walkers);
   const { start, goal } = way_through(bounds_of(walkers), title);
   const beside = ({ keys: [[t, x, y]] }: Walker) => t === from && distance({ x, y }, start) < kLeftOut;
+  check_span(walkers, [from, until], file);
   const period = to_thousandth(until - from + kUntilAgain);
   const people = walkers.filter((w) => w.keys.length > 1 && !beside(w));
   if (people.length === 0) throw new Error(`${file}: nobody in it walks.`);
   if (people.length > kMostObstacles) throw new Error(`${file} holds ${people.length} people; a world holds ${kMostObstacles}.`);
-  for (const { id, keys } of people) {
-    if (keys.length > kMostKeys) throw new Error(`${file}: person ${id} is in ${keys.length} frames; a world holds ${kMostKeys} of one person.`);
-  }
+  for (const walker of people) check_places(walker, from, file);
   const { waypoints: _waypoints, robots: _robots, ...same } = robot;
   return {
     ...same, name: "", title: `People of ${title}`,
@@ -91,6 +91,25 @@ export function world_of_people(walkers: Walker[], file: string, robot: Scenario
     goal: { x: to_thousandth(goal.x), y: to_thousandth(goal.y) },
     obstacles: people.map(({ keys }, i) => person(i + 1, keys, from, period)),
   };
+}
+
+/** Throws a sentence if the recording and a pause are longer than a path. */
+function check_span(walkers: Walker[], [from, until]: [number, number], file: string): void {
+  const most = kLongestPath - kUntilAgain;
+  if (until - from <= most) return;
+  const last = walkers.find(({ keys }) => keys[keys.length - 1][0] === until)!;
+  throw new Error(`${file} lasts ${(until - from).toFixed(0)} s, from frame ${frame_of(from)} to frame ${frame_of(until)} of `
+    + `person ${last.id}; a world holds ${most} s.`);
+}
+
+/** Throws a sentence if no path can hold the person's places. */
+function check_places({ id, keys }: Walker, from: number, file: string): void {
+  if (keys.length > kMostKeys) throw new Error(`${file}: person ${id} is in ${keys.length} frames; a world holds ${kMostKeys} of one person.`);
+  const millisecond = ([t]: Key) => to_thousandth(t - from);
+  const close = keys.findIndex((key, i) => i > 0 && millisecond(key) === millisecond(keys[i - 1]));
+  if (close < 0) return;
+  throw new Error(`${file}: frames ${frame_of(keys[close - 1][0])} and ${frame_of(keys[close][0])} of person ${id} fall on one `
+    + "millisecond; a world's times are whole milliseconds.");
 }
 
 function person(id: number, keys: PathJson["keys"], from: number, period: number): ObstacleJson {
