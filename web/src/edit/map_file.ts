@@ -2,43 +2,18 @@
 import { ScenarioDocument } from "../contract";
 import { Bounds, Point, empty_bounds } from "../geometry";
 import { Obstacle, ObstacleJson, covers, include_obstacle, is_ground } from "../obstacle";
+import { MapInfo } from "./map_yaml";
 
-/** The fields of a map's YAML file that matter here. */
-export interface MapInfo { resolution: number; origin: Point; negate: boolean; occupied: number; free: number }
 /** Grey values, row by row from the top. */
 export interface Picture { width: number; height: number; most: number; grey: Uint16Array }
 
 export const kMostObstacles = 2000; // of a world
+const kLongestMap = 2000;           // [m] edge
 const kHeight = 1;                  // [m] of what a map shows
 const kCell = 0.05;                 // [m] of an exported map
 const kMargin = 0.5;                // [m] about an exported world
 const kMostCells = 4000;            // along an edge of an exported map
 const kRoom = 0.5;                  // [m] about the start
-
-/** Reads `key: value` lines; throws a sentence that names the field. */
-export function read_map_info(yaml: string, file: string): MapInfo {
-  const fields = new Map<string, string>();
-  for (const line of yaml.split("\n")) {
-    const found = /^\s*([\w]+)\s*:\s*(.*?)\s*(#.*)?$/.exec(line);
-    if (found) fields.set(found[1], found[2]);
-  }
-  const number = (key: string, usual?: number): number => {
-    const text = fields.get(key);
-    if (text === undefined && usual !== undefined) return usual;
-    const value = Number(text);
-    if (text === undefined || text === "" || !Number.isFinite(value)) throw new Error(`${file}: ${key} must be a number.`);
-    return value;
-  };
-  const origin = /^\[([^\]]*)\]$/.exec(fields.get("origin") ?? "")?.[1].split(",").map(Number) ?? [];
-  if (origin.length < 2 || !origin.every(Number.isFinite)) throw new Error(`${file}: origin must be [x, y, yaw].`);
-  if (Math.abs(origin[2] ?? 0) > 1e-9) throw new Error(`${file}: origin is turned; only a yaw of 0 can be read.`);
-  const resolution = number("resolution");
-  if (!(resolution > 0)) throw new Error(`${file}: resolution must be above 0.`);
-  return {
-    resolution, origin: { x: origin[0], y: origin[1] }, negate: number("negate", 0) !== 0,
-    occupied: number("occupied_thresh", 0.65), free: number("free_thresh", 0.196),
-  };
-}
 
 /** Reads a PGM file of either kind, P2 (text) or P5 (binary). */
 export function read_pgm(bytes: Uint8Array, file: string): Picture {
@@ -82,6 +57,7 @@ export function read_pgm(bytes: Uint8Array, file: string): Picture {
 /** The world that a map shows: a box for each rectangle of occupied cells. Unknown cells are left free. */
 export function world_of_map(picture: Picture, info: MapInfo, name: string): ScenarioDocument {
   const { width, height } = picture;
+  if (Math.max(width, height) * info.resolution > kLongestMap) throw new Error(`The map is longer than ${kLongestMap} m.`);
   const taken = cells_above(picture, info);
   const obstacles: ObstacleJson[] = [];
   const { resolution: cell, origin } = info;
@@ -92,6 +68,7 @@ export function world_of_map(picture: Picture, info: MapInfo, name: string): Sce
       length: columns * cell, width: rows * cell,
     });
   }
+  if (obstacles.length === 0) throw new Error("The map shows no wall.");
   if (obstacles.length > kMostObstacles) {
     throw new Error(`The map needs ${obstacles.length} boxes; a world holds ${kMostObstacles}. Use a coarser map.`);
   }
