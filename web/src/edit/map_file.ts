@@ -30,8 +30,9 @@ export function read_pgm(bytes: Uint8Array, file: string): Picture {
   };
   const magic = word();
   if (magic !== "P5" && magic !== "P2") throw new Error(`${file} is no PGM picture: it begins with neither P5 nor P2.`);
-  const [width, height, most] = [Number(word()), Number(word()), Number(word())];
-  if (!(width > 0 && height > 0 && most > 0 && most < 65536) || ![width, height, most].every(Number.isInteger)) {
+  const whole = (text: string): number => (/^\d+$/.test(text) ? Number(text) : NaN);
+  const [width, height, most] = [whole(word()), whole(word()), whole(word())];
+  if (!(width > 0 && height > 0 && most > 0 && most < 65536)) {
     throw new Error(`${file}: width, height and greatest value must be whole numbers above 0.`);
   }
   if (width * height > 64e6) throw new Error(`${file} has ${width} x ${height} cells; 64 million is the limit.`);
@@ -40,18 +41,28 @@ export function read_pgm(bytes: Uint8Array, file: string): Picture {
     for (let i = 0; i < grey.length; ++i) {
       const text = word();
       if (text === "") throw new Error(`${file} ends too early.`);
-      if (!/^\d+$/.test(text)) throw new Error(`${file}: a grey value must be a whole number, not "${text.slice(0, 20)}".`);
-      grey[i] = Number(text);
+      if (!(whole(text) <= most)) throw new Error(`${file}: a grey value must be a whole number up to ${most}, not "${text.slice(0, 20)}".`);
+      grey[i] = whole(text);
     }
+    if (word() !== "") throw new Error(`${file} holds more values than width times height.`);
     return { width, height, most, grey };
   }
-  ++at; // one white space
   const size = most > 255 ? 2 : 1;
-  if (bytes.length - at < grey.length * size) throw new Error(`${file} ends too early.`);
+  at += separator_of(bytes.subarray(at), grey.length * size, file);
   for (let i = 0; i < grey.length; ++i) {
-    grey[i] = size === 1 ? bytes[at + i] : bytes[at + 2 * i] * 256 + bytes[at + 2 * i + 1];
+    const value = size === 1 ? bytes[at + i] : bytes[at + 2 * i] * 256 + bytes[at + 2 * i + 1];
+    grey[i] = Math.min(value, most);
   }
   return { width, height, most, grey };
+}
+
+/** The bytes before the `wanted` ones at the end of `rest`: one white space, or CR LF if the bytes fit only so. */
+function separator_of(rest: Uint8Array, wanted: number, file: string): number {
+  if (rest.length <= wanted) throw new Error(`${file} ends too early.`);
+  const separator = rest.length === wanted + 2 && rest[0] === 13 && rest[1] === 10 ? 2 : 1;
+  const more = rest.length - wanted - separator;
+  if (more > 0) throw new Error(`${file} holds ${more} bytes more than its width and height say.`);
+  return separator;
 }
 
 /** The world that a map shows: a box for each rectangle of occupied cells. Unknown cells are left free. */
