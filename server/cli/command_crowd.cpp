@@ -1,14 +1,17 @@
 // server/cli/command_crowd.cpp: `tautline crowd`: lets the robot cross a scene of recorded people.
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "server/cli/cli.hpp"
 #include "server/cli/pool_options.hpp"
 #include "server/lab/crowd/crowd_scenario.hpp"
 #include "server/lab/crowd/crowd_study.hpp"
 #include "server/run/json_limits.hpp"
+#include "server/run/json_reader.hpp"
 #include "server/run/scenario_json.hpp"
 #include "server/run/text_file.hpp"
 
@@ -27,11 +30,25 @@ struct CrowdCommand {
   experiment::PoolOptions pool{};
 };
 
+/// Writes the first crossing as a scenario, if the program can load it again.
+void write_scenario(const crowd::Recording& recording,
+                    const sim::Scenario& robot,
+                    const CrowdCommand& command) {
+  const nlohmann::json document = to_json(scenario_of(recording, robot));
+  try {
+    scenario_from_json(document, own_robots());
+  } catch (const DocumentError& error) {
+    throw std::runtime_error(
+        fmt::format("{} makes a scenario that cannot be loaded: {}", command.file, error.what()));
+  }
+  write_text(command.scenario, dump_json(document) + "\n");
+}
+
 int execute(CrowdCommand command) {
   const crowd::Recording recording = crowd::read_people(std::filesystem::path(command.file));
   const RunSpec robot = make_spec(find_scenario(kScenario), command.flags.resolved(), own_robots());
   if (!command.scenario.empty()) {
-    write_text(command.scenario, dump_json(to_json(scenario_of(recording, robot.scenario))) + "\n");
+    write_scenario(recording, robot.scenario, command);
     return kReached;
   }
   crowd::CrowdStudy study;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -41,11 +42,13 @@ class MapFields {
       fail(fmt::format("it is no YAML: {} in line {}.", error.msg, error.mark.line + 1));
     }
     if (!fields_.IsMap()) fail("it has no lines of \"key: value\".");
+    std::set<std::string> given;
     for (const auto& field : fields_) {
       const std::string key = field.first.IsScalar() ? field.first.Scalar() : "";
       if (std::ranges::find(kKnown, key) == kKnown.end()) {
         fail(fmt::format("\"{}\" is no field of a map.", key.substr(0, 40)));
       }
+      if (!given.insert(key).second) fail(fmt::format("{} is given twice.", key));
     }
   }
 
@@ -86,7 +89,7 @@ class MapFields {
       values[k] = number_of(list[k], list[k].IsScalar() ? list[k].Scalar() : "");
       if (!(std::abs(values[k]) <= kFarthestOrigin)) fail("origin must be three numbers.");
     }
-    if (values[2] != 0) fail("origin is turned; only a yaw of 0 can be read.");
+    if (std::abs(values[2]) > kMostYaw) fail("origin is turned; only a yaw of 0 can be read.");
     return {values[0], values[1]};
   }
 
@@ -94,6 +97,7 @@ class MapFields {
   static constexpr std::array<std::string_view, 7> kKnown{
       "image", "mode", "resolution", "origin", "negate", "occupied_thresh", "free_thresh"};
   static constexpr double kFarthestOrigin = 1e6;  // [m]
+  static constexpr double kMostYaw = 1e-9;        // [rad] that counts as none
 
   /// NaN for other words than numbers.
   static double number_of(const YAML::Node& field, const std::string& word) {

@@ -8,8 +8,6 @@ namespace server {
 namespace {
 
 using nlohmann::json;
-constexpr std::size_t kMaxKeys = 10'000;
-constexpr double kMaxTime = 1e6;  // [s]
 
 using Drive = sim::DriveConfig;
 constexpr NumberRange kLimit{1e-3, 100};
@@ -41,15 +39,15 @@ json to_json(const sim::DriveConfig& drive) {
 algo::ObstaclePath path_from_json(const JsonReader& in) {
   in.only({"period", "phase", "comes_and_goes", "keys"});
   algo::ObstaclePath path;
-  path.period = in.number("period", {0.1, kMaxTime});
-  path.phase = in.number_or("phase", 0, {-kMaxTime, kMaxTime});
+  path.period = in.number("period", {0.1, kMaxPathTime});
+  path.phase = in.number_or("phase", 0, {-kMaxPathTime, kMaxPathTime});
   path.comes_and_goes = in.flag_or("comes_and_goes", false);
   double last = -1;
-  in.each("keys", kMaxKeys, [&](const json& key, const std::string& at) {
+  in.each("keys", kMaxPathKeys, [&](const json& key, const std::string& at) {
     if (!key.is_array() || key.size() != 3) {
       throw DocumentError(at, "must be a key [t, x, y] in seconds and metres");
     }
-    const double time = finite_number(key[0], at + "/0", {0, kMaxTime});
+    const double time = finite_number(key[0], at + "/0", {0, kMaxPathTime});
     if (time <= last) throw DocumentError(at + "/0", "must be later than the key before");
     last = time;
     path.keys.push_back({time,

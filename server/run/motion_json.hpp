@@ -2,6 +2,8 @@
 // obstacles.
 #pragma once
 
+#include <cstddef>
+
 #include <nlohmann/json.hpp>
 
 #include "algo/obstacle_path.hpp"
@@ -9,6 +11,10 @@
 #include "sim/scenario.hpp"
 
 namespace server {
+
+/// Of the path of an obstacle.
+inline constexpr std::size_t kMaxPathKeys = 10'000;
+inline constexpr double kMaxPathTime = 1e6;  // [s]
 
 /// Throws DocumentError naming the field.
 sim::DriveConfig drive_from_json(const JsonReader& in);

@@ -32,9 +32,11 @@ class PgmReader {
     const std::size_t pixels = out.width * out.height;
     const std::size_t least = kind == "P2" || out.most > 255 ? 2 * pixels : pixels;
     if (bytes_.size() - at_ < least) fail("ends too early.");
+    if (kind == "P5") skip_separator(least);
     out.grey.resize(pixels);
     if (kind == "P2") {
       for (auto& grey : out.grey) grey = static_cast<std::uint16_t>(whole("value", out.most));
+      if (!word().empty()) fail("holds more values than width times height.");
     } else {
       read_bytes(out);
     }
@@ -47,8 +49,20 @@ class PgmReader {
   }
   unsigned byte(std::size_t k) const { return static_cast<unsigned char>(bytes_[k]); }
 
+  /// One white space lies before the `wanted` bytes at the end, or CR LF if the bytes fit only so.
+  void skip_separator(std::size_t wanted) {
+    const std::size_t left = bytes_.size() - at_;
+    if (left <= wanted) fail("ends too early.");
+    std::size_t separator = 1;
+    if (left == wanted + 2 && bytes_.substr(at_).starts_with("\r\n")) separator = 2;
+    if (left > wanted + separator) {
+      fail(fmt::format("holds {} bytes more than its width and height say.",
+                       left - wanted - separator));
+    }
+    at_ += separator;
+  }
+
   void read_bytes(GreyPicture& out) {
-    ++at_;  // one white space
     const bool wide = out.most > 255;
     for (auto& grey : out.grey) {
       unsigned value = byte(at_++);

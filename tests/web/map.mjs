@@ -58,6 +58,7 @@ test("a robot that is lost says so and refuses goals; a drag tells it where it i
   await fix("the room looks the same from two sides", "not_unique");
   const p = await open(browser, server.base);
   await p.page.getByText("Several places on the map look like this one").first().waitFor();
+  await until("the first step is the pose", 5, () => p.get("steps").textContent(), (w) => /Tell the robot where it is/.test(w));
   await p.page.keyboard.press("g");
   const goal = await p.pixels(8, 4);
   await p.page.mouse.click(goal.x, goal.y);
@@ -70,6 +71,7 @@ test("a robot that is lost says so and refuses goals; a drag tells it where it i
   const found = await fix("the dragged pose is found", "located");
   assert.ok(near(found.pose.x, 2, 0.1) && near(found.pose.y, 2, 0.1), JSON.stringify(found.pose));
   assert.equal(await p.get("tool-pan").getAttribute("aria-pressed"), "true", "the next press gives no pose");
+  await until("the first step is a goal", 5, () => p.get("steps").textContent(), (w) => /Send the robot somewhere/.test(w));
   await p.page.keyboard.press("g");
   await p.page.mouse.click(goal.x, goal.y);
   await until("the robot drives", 20, session, (s) => s.mission === "driving");

@@ -4,6 +4,7 @@ import { test } from "node:test";
 import { empty_bounds } from "../../web/src/geometry";
 import { handles_of } from "../../web/src/edit/handles";
 import { read_people, world_of_people } from "../../web/src/edit/people_file";
+import { text_of } from "../../web/src/edit/world_file";
 import { include_obstacle, obstacle_from_json, obstacle_to_json, present, topmost } from "../../web/src/obstacle";
 import { fold_session, new_scene, show_frame } from "../../web/src/state/scene";
 
@@ -28,18 +29,27 @@ test("somebody beside the robot at the beginning is left out, and somebody who c
   assert.equal(world_of(`${kSquare}110 w 1.5 3\n200 w 5 3\n`).obstacles!.length, 3);
 });
 
+test("a repeated line counts once, and a byte order mark not at all", () => {
+  const bytes = new TextEncoder().encode("\uFEFF0 1 2 3\r\n10 1 3 3\r\n0 1 2.0 3\r\n10 1 3 3\r\n");
+  const [one] = read_people(text_of({ name: "square.txt", bytes }), "square.txt");
+  assert.deepEqual(one, { id: "1", keys: [[0, 2, 3], [0.4, 3, 3]] });
+});
+
 test("a file that holds no such lines says where", () => {
   const fault = (text: string, why: RegExp) => assert.throws(() => world_of(text), why, text);
   fault("0 1 2 3\n0 2 3\n", /square.txt, line 2: 3 words instead/);
   fault("zero 1 2 3\n", /line 1: "zero" is no number of a frame/);
   for (const word of ["nan", "1e300", "3x", "0x10", "Infinity", "--1", "1e5"]) fault(`\n0 1 2 ${word}\n`, /line 2: "2 .*" is no place in metres/);
-  fault("0 1 2 3\n0 1 4 5\n", /person 1 is at two places in frame 0/);
+  fault("0 1 2 3\n5 1 2 3\n0 1 4 5\n", /square.txt, line 3: person 1 is at another place in frame 0 than in line 1/);
   fault("", /square.txt holds nobody/);
   fault(" \n\n", /holds nobody/);
   fault("0 1 0 0\n0 2 5 5\n", /nobody in it walks/);
   fault("0 1 0 0\n10 1 1 1\n", /stay within 1.0 x 1.0 m; a crossing needs 2 m/);
   fault(Array.from({ length: 2001 }, (_, i) => `0 ${i} ${i} 9\n10 ${i} ${i} 20\n`).join(""), /holds 2001 people; a world holds 2000/);
-  fault(Array.from({ length: 10_001 }, (_, i) => `${i} 1 ${i} 9\n`).join(""), /line 10001: person 1 has more than 10000 places/);
+  fault(`${kSquare}1e9 7 5 5\n`, /square.txt lasts 39999996 s, from frame 100 to frame 1000000000 of person 7; a world holds 999995 s/);
+  fault(`${kSquare}200 7 5 5\n200.01 7 5 6\n`, /square.txt: frames 200 and 200.01 of person 7 fall on one millisecond/);
+  const long = Array.from({ length: 10_001 }, (_, i) => `${i} 7 5 5\n`).join("");
+  fault(kSquare + long, /square.txt: person 7 is in 10001 frames; a world holds 10000 of one person/);
 });
 
 const kPerson = { id: 1, type: "cylinder" as const, x: 4, y: 3, radius: 0.25, path: { period: 20, comes_and_goes: true, keys: [[2, 4, 3], [6, 8, 5]] as [number, number, number][] } };

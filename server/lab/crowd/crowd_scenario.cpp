@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 #include <string_view>
 
@@ -10,6 +11,7 @@
 
 #include "server/lab/crowd/crossing.hpp"
 #include "server/run/library_files.hpp"
+#include "server/run/motion_json.hpp"
 #include "server/run/scenario_json.hpp"
 
 namespace server::crowd {
@@ -39,6 +41,44 @@ std::string scenario_name(std::string_view title) {
   return name.empty() ? "world" : name;
 }
 
+/// Throws a sentence if `recording` and a pause are longer than a path.
+void check_span(const Recording& recording) {
+  const double most = kMaxPathTime - kUntilAgain;
+  if (recording.until - recording.from <= most) return;
+  const auto last =
+      std::ranges::max_element(recording.walkers, {}, [](const Walker& w) { return w.until(); });
+  throw std::runtime_error(fmt::format(
+      "{} lasts {:.0f} s, from frame {} to frame {} of person {}; a scenario holds {:.0f} s",
+      recording.name,
+      recording.until - recording.from,
+      frame_at(recording.from),
+      frame_at(recording.until),
+      last->id,
+      most));
+}
+
+/// Throws a sentence if no path can hold the places of `walker`.
+void check_places(const Walker& walker, const Recording& recording) {
+  if (walker.keys.size() > kMaxPathKeys) {
+    throw std::runtime_error(
+        fmt::format("{}: person {} is in {} frames; a scenario holds {} of one person",
+                    recording.name,
+                    walker.id,
+                    walker.keys.size(),
+                    kMaxPathKeys));
+  }
+  const auto close = std::ranges::adjacent_find(
+      walker.keys, {}, [&](const auto& key) { return to_thousandth(key.time - recording.from); });
+  if (close == walker.keys.end()) return;
+  throw std::runtime_error(fmt::format(
+      "{}: frames {} and {} of person {} fall on one millisecond; a scenario's times are whole "
+      "milliseconds",
+      recording.name,
+      frame_at(close->time),
+      frame_at(std::next(close)->time),
+      walker.id));
+}
+
 algo::Obstacle person_of(const Walker& walker, const Recording& recording) {
   algo::Obstacle person{.shape = algo::Cylinder{kPersonRadius}, .height = kPersonHeight};
   person.path =
@@ -58,6 +98,7 @@ algo::Obstacle person_of(const Walker& walker, const Recording& recording) {
 
 sim::Scenario scenario_of(const Recording& recording, const sim::Scenario& robot) {
   const Way way = first_way(recording);
+  check_span(recording);
   sim::Scenario scenario = robot;
   scenario.name = scenario_name(recording.name);
   scenario.title = "People of " + recording.name;
@@ -73,6 +114,7 @@ sim::Scenario scenario_of(const Recording& recording, const sim::Scenario& robot
         walker.there(recording.from) &&
         (walker.keys.front().position_W - way.start_W.position()).norm() < kLeftOut;
     if (in_the_way) continue;
+    check_places(walker, recording);
     scenario.obstacles.push_back(person_of(walker, recording));
     scenario.obstacles.back().id = static_cast<std::uint32_t>(scenario.obstacles.size());
   }

@@ -10,8 +10,8 @@ namespace server::crowd {
 /// the page makes the same one of the same file (web/src/edit/people_file.ts). `robot` gives robot,
 /// sensors, controller and parameters. Nobody is in it who is seen once only, or who stands within
 /// kLeftOut of the robot at the beginning. When the recording is over it begins anew. Throws
-/// std::runtime_error with a sentence if the recording is too small, or holds nobody who walks, or
-/// more people than a scenario takes.
+/// std::runtime_error with a sentence if the recording is too small or too long for a scenario,
+/// or holds nobody who walks, or more people or places than a scenario takes.
 sim::Scenario scenario_of(const Recording& recording, const sim::Scenario& robot);
 
 }  // namespace server::crowd

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <map>
 #include <stdexcept>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -16,6 +18,7 @@ namespace {
 constexpr double kFarthest = 1e4;   // [m] of a place from the origin
 constexpr double kLastFrame = 1e9;  // of a recording
 constexpr const char* kBlank = " \t\r,";
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of some editors, in UTF-8
 
 [[noreturn]] void refuse_line(const std::string& name, std::size_t line, const std::string& why) {
   throw std::runtime_error(fmt::format("{}, line {}: {}", name, line, why));
@@ -40,14 +43,34 @@ std::optional<double> number_of(const std::string& word, double most) {
   return value;
 }
 
-/// Orders the keys of `walker`. @return a sentence if they cannot be a way
-std::optional<std::string> ordered(Walker& walker) {
-  std::ranges::stable_sort(walker.keys, {}, &algo::ObstaclePath::Key::time);
-  const auto twice = std::ranges::adjacent_find(
-      walker.keys, {}, [](const algo::ObstaclePath::Key& key) { return key.time; });
-  if (twice == walker.keys.end()) return std::nullopt;
-  return fmt::format(
-      "person {} is at two places in frame {:.0f}", walker.id, twice->time / kFrameTime);
+/// Somebody's place, and the line that tells it.
+struct PeopleLine {
+  algo::ObstaclePath::Key key{};
+  std::size_t number = 0;
+};
+
+/// The places of person `id` in order of time. A line that says the same again counts once; throws
+/// if two lines differ.
+std::vector<algo::ObstaclePath::Key> ordered(std::vector<PeopleLine> lines,
+                                             const std::string& id,
+                                             const std::string& name) {
+  std::ranges::stable_sort(lines, {}, [](const PeopleLine& line) { return line.key.time; });
+  std::vector<algo::ObstaclePath::Key> keys;
+  std::size_t last = 0;  // the number of the line before
+  for (const PeopleLine& line : lines) {
+    if (!keys.empty() && keys.back().time == line.key.time) {
+      if (keys.back().position_W == line.key.position_W) continue;
+      refuse_line(name,
+                  line.number,
+                  fmt::format("person {} is at another place in frame {} than in line {}",
+                              id,
+                              frame_at(line.key.time),
+                              last));
+    }
+    keys.push_back(line.key);
+    last = line.number;
+  }
+  return keys;
 }
 
 void measure(Recording& recording) {
@@ -75,12 +98,18 @@ algo::Vec2 Walker::at(double time) const {
   return last.position_W + share * (next->position_W - last.position_W);
 }
 
+std::string frame_at(double time) {
+  return fmt::format("{:.10g}", time / kFrameTime);
+}
+
 Recording read_people(std::istream& lines, const std::string& name) {
   Recording recording{.name = name};
   std::map<std::string, std::size_t> index;
+  std::vector<std::vector<PeopleLine>> places;  // of each walker
   std::size_t number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
+    if (number == 1 && line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
     const std::vector<std::string> words = words_of(line);
     if (words.empty()) continue;
     if (words.size() != 4) {
@@ -94,12 +123,16 @@ Recording read_people(std::istream& lines, const std::string& name) {
       refuse_line(name, number, fmt::format("'{} {}' is no place in metres", words[2], words[3]));
     }
     const auto [known, is_new] = index.try_emplace(words[1], recording.walkers.size());
-    if (is_new) recording.walkers.push_back({.id = words[1]});
-    recording.walkers[known->second].keys.push_back({*frame * kFrameTime, {*x, *y}});
+    if (is_new) {
+      recording.walkers.push_back({.id = words[1]});
+      places.emplace_back();
+    }
+    places[known->second].push_back({{*frame * kFrameTime, {*x, *y}}, number});
   }
   if (recording.walkers.empty()) throw std::runtime_error(name + " holds nobody");
-  for (Walker& walker : recording.walkers) {
-    if (const auto why = ordered(walker)) throw std::runtime_error(name + ": " + *why);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    Walker& walker = recording.walkers[i];
+    walker.keys = ordered(std::move(places[i]), walker.id, name);
   }
   measure(recording);
   return recording;

@@ -38,6 +38,9 @@ struct Recording {
   algo::Vec2 high{0, 0};          // [m]
 };
 
+/// The frame at `time` [s], with as many digits as a file has.
+std::string frame_at(double time);
+
 /// Reads lines `frame id x y`, with x and y in metres; `name` stands in the errors. Throws
 /// std::runtime_error with a sentence that names the line.
 Recording read_people(std::istream& lines, const std::string& name);

@@ -61,6 +61,18 @@ TEST(CrowdScenario, ARecordingThatMakesNoneSaysWhy) {
   };
   EXPECT_THAT(fault("0 1 0 0\n0 2 5 5\n"), testing::HasSubstr("square: nobody in it walks"));
   EXPECT_THAT(fault("0 1 0 0\n10 1 1 1\n"), testing::HasSubstr("a crossing needs 2 m"));
+  const std::string square = "100 a 0 0\n2600 a 0 0\n100 b 10 6\n2600 b 10 6\n";
+  EXPECT_THAT(fault(square + "1e9 7 5 5\n"),
+              testing::HasSubstr("square lasts 39999996 s, from frame 100 to frame 1000000000 of "
+                                 "person 7; a scenario holds 999995 s"));
+  EXPECT_THAT(
+      fault(square + "200 7 5 5\n200.01 7 5 6\n"),
+      testing::HasSubstr("square: frames 200 and 200.01 of person 7 fall on one millisecond"));
+  std::string longest = square;
+  for (int i = 0; i < 10'000; ++i) longest += fmt::format("{} 7 5 5\n", 200 + i);
+  EXPECT_EQ(fault(longest), "none");
+  EXPECT_THAT(fault(longest + "20000 7 5 5\n"),
+              testing::HasSubstr("person 7 is in 10001 frames; a scenario holds 10000"));
   std::string many;
   for (std::size_t i = 0; i <= kMaxObstacles; ++i)
     many += fmt::format("0 {0} {0} 9\n9 {0} {0} 20\n", i);

@@ -48,14 +48,31 @@ TEST(PeopleFile, ReadsEachPersonAsTheyWalk) {
   EXPECT_EQ(square.high, algo::Vec2(4, 4));
 }
 
+TEST(PeopleFile, ARepeatedLineCountsOnce) {
+  const Recording square = people_in("0 1 2 3\n10 1 3 3\n0 1 2.0 3\n10 1 3 3\n10 1 3 3\n");
+  ASSERT_EQ(square.walkers.size(), 1U);
+  EXPECT_EQ(square.walkers[0].keys.size(), 2U);
+}
+
+TEST(PeopleFile, AByteOrderMarkIsNoPartOfTheFirstFrame) {
+  EXPECT_EQ(people_in("\xEF\xBB\xBF"
+                      "0 1 2 3\n")
+                .walkers.size(),
+            1U);
+  EXPECT_THAT(people_fault("0 1 2 3\n\xEF\xBB\xBF"
+                           "1 1 2 3\n"),
+              HasSubstr("no number of a frame"));
+}
+
 TEST(PeopleFile, SaysWhichLineIsWrong) {
   EXPECT_THAT(people_fault("0 1 2 3\n0 2 3\n"), HasSubstr("square.txt, line 2: 3 words"));
   EXPECT_THAT(people_fault("zero 1 2 3\n"), HasSubstr("line 1: 'zero' is no number of a frame"));
   EXPECT_THAT(people_fault("0 1 2 nan\n"), HasSubstr("'2 nan' is no place"));
   EXPECT_THAT(people_fault("0 1 2 1e300\n"), HasSubstr("no place"));
   EXPECT_THAT(people_fault("0 1 2 3x\n"), HasSubstr("no place"));
-  EXPECT_THAT(people_fault("0 1 2 3\n0 1 4 5\n"),
-              HasSubstr("person 1 is at two places in frame 0"));
+  EXPECT_THAT(
+      people_fault("0 1 2 3\n5 1 2 3\n0 1 4 5\n"),
+      HasSubstr("square.txt, line 3: person 1 is at another place in frame 0 than in line 1"));
   EXPECT_THAT(people_fault("\n \n"), HasSubstr("holds nobody"));
   EXPECT_THROW(read_people(std::filesystem::path("/no/such/file")), std::runtime_error);
   EXPECT_THROW(read_people(std::filesystem::temp_directory_path()), std::runtime_error);

@@ -6,9 +6,13 @@
 #include <stdexcept>
 #include <string>
 
+#include "tests/folders.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
+
+#include "server/run/text_file.hpp"
 
 namespace server {
 namespace {
@@ -138,6 +142,31 @@ TEST_F(MapFile, BadFilesAreRefusedWithASentence) {
   EXPECT_THAT(complaint(good, "P5\n99999 99999\n255\n"), testing::HasSubstr("64 million pixels"));
   EXPECT_THAT(complaint(good, "P2\n1 1\n255\n254\n"), testing::HasSubstr("shows no wall"));
   EXPECT_THROW(read_map(folder_ / "none.yaml"), std::runtime_error);
+}
+
+/// Of each line of tests/maps/table.json, which the page's tests read too: a description, a
+/// picture, and words of the refusal; none: it shows the room of the first one.
+TEST(MapFiles, ShowOneRoomOrAreRefusedInTheWordsOfTheTable) {
+  const fs::path folder = tests::folder() / "maps";
+  const auto shown = [&](const nlohmann::json& line) -> std::string {
+    const auto picture = [&](const std::string&) { return read_text(folder / line.at(1)); };
+    try {
+      return map_document(map_from(read_text(folder / line.at(0)), "map.yaml", picture), "");
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+  };
+  const auto table = nlohmann::json::parse(read_text(folder / "table.json"));
+  const std::string room = shown(table.at(0));
+  EXPECT_THAT(room, testing::HasSubstr("cells"));
+  for (const auto& line : table) {
+    const std::string says = line.at(2);
+    if (says.empty()) {
+      EXPECT_EQ(shown(line), room) << line;
+    } else {
+      EXPECT_THAT(shown(line), testing::HasSubstr(says)) << line;
+    }
+  }
 }
 
 }  // namespace

@@ -185,13 +185,11 @@ export class Editor {
     this.app_.go_live();
     if (goal && this.app_.desk?.carry(goal)) return;
     if (!this.app_.on_hardware) {
-      if (goal) this.app_.done_step(kGoalStep);
       const { route } = this.app_.scene;
-      if (goal && further && route.goals.length > 0) {
-        this.want_route("Add waypoint", { ...route, goals: [...route.goals, goal] });
-      } else {
-        this.want_route(goal ? "Set goal" : "Clear goals", { goals: goal ? [goal] : [], next: 0, loop: false });
-      }
+      const appends = goal && further && route.goals.length > 0;
+      const asked = appends ? this.want_route("Add waypoint", { ...route, goals: [...route.goals, goal] })
+        : this.want_route(goal ? "Set goal" : "Clear goals", { goals: goal ? [goal] : [], next: 0, loop: false });
+      if (goal) void asked.then((answer) => answer && this.app_.done_step(kGoalStep));
     } else if (goal) {
       void this.preview(goal, further);
     } else {
@@ -200,10 +198,10 @@ export class Editor {
     }
   }
   /** Replaces all goals of a simulated robot. */
-  want_route(label: string, to: Route): void {
+  want_route(label: string, to: Route): Promise<Accepted | null> {
     const { route, arm_asked: asked } = this.app_.scene;
     const edit = route_edit(label, route, to);
-    void this.edit(asked && asked.type !== "set_joints" ? { ...edit, backward: asked } : edit);
+    return this.edit(asked && asked.type !== "set_joints" ? { ...edit, backward: asked } : edit);
   }
   /** Changes shape, size or path of an obstacle. */
   change(label: string, from: Obstacle, to: Obstacle): Promise<Accepted | null> {
@@ -225,8 +223,8 @@ export class Editor {
   /** Changes one goal of the list, or takes it out. */
   change_goal(index: number, goal: Goal | null): void {
     const { route } = this.app_.scene;
-    if (goal) this.want_route("Move goal", { ...route, goals: route.goals.map((g, i) => (i === index ? goal : g)) });
-    else this.want_route("Remove goal", without_goal(route, index));
+    if (goal) void this.want_route("Move goal", { ...route, goals: route.goals.map((g, i) => (i === index ? goal : g)) });
+    else void this.want_route("Remove goal", without_goal(route, index));
   }
   private async preview(goal: Goal, further: boolean): Promise<void> {
     const preview = { goal, further, trouble: null };

@@ -2,43 +2,18 @@
 import { ScenarioDocument } from "../contract";
 import { Bounds, Point, empty_bounds } from "../geometry";
 import { Obstacle, ObstacleJson, covers, include_obstacle, is_ground } from "../obstacle";
+import { MapInfo } from "./map_yaml";
 
-/** The fields of a map's YAML file that matter here. */
-export interface MapInfo { resolution: number; origin: Point; negate: boolean; occupied: number; free: number }
 /** Grey values, row by row from the top. */
 export interface Picture { width: number; height: number; most: number; grey: Uint16Array }
 
 export const kMostObstacles = 2000; // of a world
+const kLongestMap = 2000;           // [m] edge
 const kHeight = 1;                  // [m] of what a map shows
 const kCell = 0.05;                 // [m] of an exported map
 const kMargin = 0.5;                // [m] about an exported world
 const kMostCells = 4000;            // along an edge of an exported map
 const kRoom = 0.5;                  // [m] about the start
-
-/** Reads `key: value` lines; throws a sentence that names the field. */
-export function read_map_info(yaml: string, file: string): MapInfo {
-  const fields = new Map<string, string>();
-  for (const line of yaml.split("\n")) {
-    const found = /^\s*([\w]+)\s*:\s*(.*?)\s*(#.*)?$/.exec(line);
-    if (found) fields.set(found[1], found[2]);
-  }
-  const number = (key: string, usual?: number): number => {
-    const text = fields.get(key);
-    if (text === undefined && usual !== undefined) return usual;
-    const value = Number(text);
-    if (text === undefined || text === "" || !Number.isFinite(value)) throw new Error(`${file}: ${key} must be a number.`);
-    return value;
-  };
-  const origin = /^\[([^\]]*)\]$/.exec(fields.get("origin") ?? "")?.[1].split(",").map(Number) ?? [];
-  if (origin.length < 2 || !origin.every(Number.isFinite)) throw new Error(`${file}: origin must be [x, y, yaw].`);
-  if (Math.abs(origin[2] ?? 0) > 1e-9) throw new Error(`${file}: origin is turned; only a yaw of 0 can be read.`);
-  const resolution = number("resolution");
-  if (!(resolution > 0)) throw new Error(`${file}: resolution must be above 0.`);
-  return {
-    resolution, origin: { x: origin[0], y: origin[1] }, negate: number("negate", 0) !== 0,
-    occupied: number("occupied_thresh", 0.65), free: number("free_thresh", 0.196),
-  };
-}
 
 /** Reads a PGM file of either kind, P2 (text) or P5 (binary). */
 export function read_pgm(bytes: Uint8Array, file: string): Picture {
@@ -55,8 +30,9 @@ export function read_pgm(bytes: Uint8Array, file: string): Picture {
   };
   const magic = word();
   if (magic !== "P5" && magic !== "P2") throw new Error(`${file} is no PGM picture: it begins with neither P5 nor P2.`);
-  const [width, height, most] = [Number(word()), Number(word()), Number(word())];
-  if (!(width > 0 && height > 0 && most > 0 && most < 65536) || ![width, height, most].every(Number.isInteger)) {
+  const whole = (text: string): number => (/^\d+$/.test(text) ? Number(text) : NaN);
+  const [width, height, most] = [whole(word()), whole(word()), whole(word())];
+  if (!(width > 0 && height > 0 && most > 0 && most < 65536)) {
     throw new Error(`${file}: width, height and greatest value must be whole numbers above 0.`);
   }
   if (width * height > 64e6) throw new Error(`${file} has ${width} x ${height} cells; 64 million is the limit.`);
@@ -65,23 +41,34 @@ export function read_pgm(bytes: Uint8Array, file: string): Picture {
     for (let i = 0; i < grey.length; ++i) {
       const text = word();
       if (text === "") throw new Error(`${file} ends too early.`);
-      if (!/^\d+$/.test(text)) throw new Error(`${file}: a grey value must be a whole number, not "${text.slice(0, 20)}".`);
-      grey[i] = Number(text);
+      if (!(whole(text) <= most)) throw new Error(`${file}: a grey value must be a whole number up to ${most}, not "${text.slice(0, 20)}".`);
+      grey[i] = whole(text);
     }
+    if (word() !== "") throw new Error(`${file} holds more values than width times height.`);
     return { width, height, most, grey };
   }
-  ++at; // one white space
   const size = most > 255 ? 2 : 1;
-  if (bytes.length - at < grey.length * size) throw new Error(`${file} ends too early.`);
+  at += separator_of(bytes.subarray(at), grey.length * size, file);
   for (let i = 0; i < grey.length; ++i) {
-    grey[i] = size === 1 ? bytes[at + i] : bytes[at + 2 * i] * 256 + bytes[at + 2 * i + 1];
+    const value = size === 1 ? bytes[at + i] : bytes[at + 2 * i] * 256 + bytes[at + 2 * i + 1];
+    grey[i] = Math.min(value, most);
   }
   return { width, height, most, grey };
+}
+
+/** The bytes before the `wanted` ones at the end of `rest`: one white space, or CR LF if the bytes fit only so. */
+function separator_of(rest: Uint8Array, wanted: number, file: string): number {
+  if (rest.length <= wanted) throw new Error(`${file} ends too early.`);
+  const separator = rest.length === wanted + 2 && rest[0] === 13 && rest[1] === 10 ? 2 : 1;
+  const more = rest.length - wanted - separator;
+  if (more > 0) throw new Error(`${file} holds ${more} bytes more than its width and height say.`);
+  return separator;
 }
 
 /** The world that a map shows: a box for each rectangle of occupied cells. Unknown cells are left free. */
 export function world_of_map(picture: Picture, info: MapInfo, name: string): ScenarioDocument {
   const { width, height } = picture;
+  if (Math.max(width, height) * info.resolution > kLongestMap) throw new Error(`The map is longer than ${kLongestMap} m.`);
   const taken = cells_above(picture, info);
   const obstacles: ObstacleJson[] = [];
   const { resolution: cell, origin } = info;
@@ -92,6 +79,7 @@ export function world_of_map(picture: Picture, info: MapInfo, name: string): Sce
       length: columns * cell, width: rows * cell,
     });
   }
+  if (obstacles.length === 0) throw new Error("The map shows no wall.");
   if (obstacles.length > kMostObstacles) {
     throw new Error(`The map needs ${obstacles.length} boxes; a world holds ${kMostObstacles}. Use a coarser map.`);
   }

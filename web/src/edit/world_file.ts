@@ -1,7 +1,8 @@
 // web/src/edit/world_file.ts: a world from the files that a person chooses: a scenario, a BARN file, a map.
 import { ScenarioDocument } from "../contract";
 import { ObstacleJson } from "../obstacle";
-import { read_map_info, read_pgm, world_of_map } from "./map_file";
+import { read_pgm, world_of_map } from "./map_file";
+import { read_map_info } from "./map_yaml";
 
 export interface GivenFile { name: string; bytes: Uint8Array }
 

@@ -5,6 +5,7 @@ import { App, use_app, use_ui } from "../app";
 import { SessionState } from "../contract";
 import { Tool } from "../edit/gestures";
 import { kAllDone, kGoalStep, kObstacleStep } from "../state/first_steps";
+import { use_pulse } from "../state/store";
 import { may } from "../people";
 import { use_me } from "../ui/guard";
 import { icons } from "../ui/icons";
@@ -23,7 +24,13 @@ function take(app: App, tool: Tool): void {
   app.pick_tool(tool);
 }
 
-function step_of(step: number, session: SessionState): Step {
+function step_of(step: number, session: SessionState, lost: boolean): Step {
+  if (step === kGoalStep && lost) {
+    return {
+      words: "Tell the robot where it is.", tool: "pose", picked: "Press where the robot is; drag for its heading.",
+      label: "Give its pose", key: "I", act: (app) => take(app, "pose"),
+    };
+  }
   if (step === kGoalStep) {
     const real = session.source === "hardware";
     return {
@@ -51,10 +58,12 @@ function step_of(step: number, session: SessionState): Step {
 export function FirstSteps(): JSX.Element | null {
   const app = use_app();
   const { step, tool, preview, session } = use_ui("step", "tool", "preview", "session");
+  use_pulse(500); // frames tell whether the robot is lost
   const may_drive = may(use_me(), "operator");
   if (!may_drive || !session?.robot.drives || preview || step >= kAllDone) return null;
   if (session.source === "hardware" && step > kGoalStep) return null;
-  const { words, tool: takes, picked, label, key, act } = step_of(step, session);
+  const fix = app.scene.frame?.map_pose?.fix ?? "located";
+  const { words, tool: takes, picked, label, key, act } = step_of(step, session, fix !== "located");
   const ready = takes !== undefined && tool === takes;
   return (
     <div class="card steps" data-testid="steps">
