@@ -113,11 +113,6 @@ sim::Scenario find_scenario(const std::string& name) {
       .load(name);
 }
 
-std::string refuse_folder(const std::string& path) {
-  if (!std::filesystem::is_directory(path)) return {};
-  return path + " is a folder: name the file to write";
-}
-
 ProgressLine::ProgressLine() : interactive_(isatty(STDERR_FILENO) != 0) {}
 
 ProgressLine::~ProgressLine() {

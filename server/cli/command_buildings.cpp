@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
+#include "server/cli/output_files.hpp"
 #include "server/cli/pool_options.hpp"
 #include "server/lab/buildings/building_study.hpp"
 #include "server/lab/buildings/tour_study.hpp"
@@ -131,6 +132,7 @@ void add_buildings_command(Command app, int& status) {
       .add_option("--scenario",
                   command->scenario,
                   "Run nothing: write the first building to this file as a scenario for the page")
+      .check(refuse_unwritable)
       .type_name("FILE");
   const Option tour =
       buildings

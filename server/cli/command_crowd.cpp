@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
+#include "server/cli/output_files.hpp"
 #include "server/cli/pool_options.hpp"
 #include "server/lab/crowd/crowd_scenario.hpp"
 #include "server/lab/crowd/crowd_study.hpp"
@@ -62,13 +63,13 @@ void add_crowd_command(Command app, int& status) {
   crowd
       .add_option(
           "--tracks", command->tracks, "Also write the robot's true pose at each tick, as CSV")
-      .check(refuse_folder)
+      .check(refuse_unwritable)
       .type_name("FILE");
   crowd
       .add_option("--scenario",
                   command->scenario,
                   "Drive nothing: write the first crossing to this file as a scenario for the page")
-      .check(refuse_folder)
+      .check(refuse_unwritable)
       .type_name("FILE");
   crowd.add_flag("--json", command->as_json, "Print JSON");
   command->flags.add_to(crowd);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
+#include "server/cli/output_files.hpp"
 #include "server/cli/pool_options.hpp"
 #include "server/lab/mapping/locate_log.hpp"
 #include "server/lab/mapping/locate_study.hpp"
@@ -84,7 +85,7 @@ void add_locate_command(Command app, int& status) {
                   command->poses,
                   "Write the poses of the scans at which the robot was located: lines of stamp, x, "
                   "y [m], theta [rad]")
-      .check(refuse_folder)
+      .check(refuse_unwritable)
       .type_name("FILE");
   locate.add_flag("--study",
                   command->study,
@@ -95,7 +96,7 @@ void add_locate_command(Command app, int& status) {
                   command->markdown,
                   "Also write the study's table to this file, and pictures into pictures/maps/ "
                   "beside it")
-      .check(refuse_folder)
+      .check(refuse_unwritable_document)
       .type_name("FILE");
   locate.add_option("--wrong", command->options.wrong, "That part of the map (default 0.1)")
       .range(0.0, 0.5);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
+#include "server/cli/output_files.hpp"
 #include "server/cli/pool_options.hpp"
 #include "server/lab/mapping/long_building.hpp"
 #include "server/lab/mapping/map_study.hpp"
@@ -100,7 +101,7 @@ void add_map_command(Command app, int& status) {
                  command->simulate,
                  "Instead of mapping, write the log of a simulated drive through a building of "
                  "300 m with loops of 500 m to FILE, and its true relations beside it")
-      .check(refuse_folder)
+      .check(refuse_unwritable)
       .type_name("FILE");
   map.add_option("--relations",
                  command->relations,
@@ -111,13 +112,13 @@ void add_map_command(Command app, int& status) {
   map.add_option("--poses",
                  command->poses,
                  "Write the matched path of the first seed: lines of stamp, x, y [m], theta [rad]")
-      .check(refuse_folder)
+      .check(refuse_unwritable)
       .type_name("FILE");
   map.add_option("--map",
                  command->map,
                  "Write the map of the matched path as a YAML file of map_server, its picture "
                  "beside it")
-      .check(refuse_folder)
+      .check(refuse_unwritable)
       .type_name("FILE");
   map.add_option("--odometry-scale",
                  options.errors.odometry_scale,
@@ -135,12 +136,12 @@ void add_map_command(Command app, int& status) {
       .range(1, 1000);
   add_threads_option(map, options.threads);
   map.add_option("--out", command->out, "A picture of the first seed's map, as SVG")
-      .check(refuse_folder)
+      .check(refuse_unwritable)
       .type_name("FILE");
   map.add_option("--markdown",
                  command->markdown,
                  "Also write tables to this file, and pictures into pictures/mapping/ beside it")
-      .check(refuse_folder)
+      .check(refuse_unwritable_document)
       .type_name("FILE");
   map.add_flag("--json", command->as_json, "Print JSON: an object, or an array of several logs'");
   map.callback([command, &status] { status = execute(*command); });

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
+#include "server/cli/output_files.hpp"
 #include "server/cli/pool_options.hpp"
 #include "server/lab/reproduce/arm_study.hpp"
 #include "server/lab/reproduce/filter_study.hpp"
@@ -150,7 +151,7 @@ void add_reproduce_command(Command app, int& status) {
       .add_option("--markdown",
                   options->markdown,
                   "Also write the report to this file, and pictures/reproduction/ beside it")
-      .check(refuse_folder)
+      .check(refuse_unwritable_document)
       .type_name("FILE");
   const Option filter = command.add_flag(
       "--filter", options->filter, "Run the filter chapter instead: scenes, recordings, verdicts");

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
+#include "server/cli/output_files.hpp"
 #include "server/cli/pool_options.hpp"
 #include "server/lab/soak/course_study.hpp"
 #include "server/lab/soak/indoor_world.hpp"
@@ -221,6 +222,7 @@ void add_soak_command(Command app, int& status) {
   soak.add_option("--scenario",
                   command->scenario,
                   "Run nothing: write the first world to this file as a scenario for the page")
+      .check(refuse_unwritable)
       .type_name("FILE");
   soak.add_flag("--operator",
                 command->by_hand,

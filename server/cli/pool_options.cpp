@@ -4,7 +4,7 @@
 #include <exception>
 #include <utility>
 
-#include "server/cli/cli.hpp"
+#include "server/cli/output_files.hpp"
 #include "server/experiment/judge.hpp"
 #include "server/experiment/table.hpp"
 
@@ -54,12 +54,12 @@ void add_pool_options(Command command, experiment::PoolOptions& pool, const std:
 
 void add_rows_option(Command command, std::string& file) {
   command.add_option("--rows", file, "Also write every run with every figure to this file")
-      .check(refuse_folder)
       .check([](const std::string& path) -> std::string {
         return experiment::is_table_file(path)
                    ? ""
                    : path + ": must end in .txt, .md, .csv, .tex or .json";
       })
+      .check(refuse_unwritable)
       .type_name("FILE");
 }
 

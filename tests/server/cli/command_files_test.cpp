@@ -1,0 +1,67 @@
+// tests/server/cli/command_files_test.cpp: what the commands refuse before they begin.
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/temporary_folder.hpp"
+#include <CLI/CLI.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/cli/cli.hpp"
+#include "server/run/text_file.hpp"
+
+namespace server {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class CommandFilesTest : public testing::Test {
+ protected:
+  /// The sentence that refuses these arguments, the first of which is the command; else empty.
+  static std::string refusal(void (*add)(Command, int&), std::vector<std::string> arguments) {
+    CLI::App app;
+    int status = -1;
+    add(Command(app), status);
+    std::ranges::reverse(arguments);  // CLI11 takes them from the end
+    testing::internal::CaptureStdout();
+    std::string sentence;
+    try {
+      app.parse(arguments);
+    } catch (const std::exception& e) {
+      sentence = e.what();
+    }
+    testing::internal::GetCapturedStdout();
+    return sentence;
+  }
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+
+ private:
+  tests::TemporaryFolder folder_{};
+};
+
+TEST_F(CommandFilesTest, AnOutputThatCannotBeWrittenIsRefusedAtOnce) {
+  const std::string nowhere = path("none/out.csv");
+  // No input exists: the sentence about the output comes before any about the input.
+  EXPECT_THAT(refusal(add_crowd_command, {"crowd", "x", "--tracks", nowhere}), HasSubstr(nowhere));
+  EXPECT_THAT(refusal(add_buildings_command, {"buildings", "--rows", nowhere}), HasSubstr(nowhere));
+  EXPECT_THAT(refusal(add_barn_command, {"barn", "x", "--rows", nowhere}), HasSubstr(nowhere));
+  EXPECT_THAT(refusal(add_locate_command, {"locate", "x", "--poses", nowhere}), HasSubstr(nowhere));
+  for (const char* option : {"--out", "--poses", "--map"}) {
+    EXPECT_THAT(refusal(add_map_command, {"map", "x", option, nowhere}), HasSubstr(nowhere));
+  }
+  EXPECT_THAT(refusal(add_export_command, {"export", "1", "-o", nowhere}), HasSubstr(nowhere));
+}
+
+TEST_F(CommandFilesTest, AnExportThatFailsKeepsTheOldFile) {
+  write_text(path("old.csv"), "kept");
+  EXPECT_NE(
+      refusal(add_export_command, {"export", "1", "--db", path("no.db"), "-o", path("old.csv")}),
+      "");
+  EXPECT_EQ(read_text(path("old.csv")), "kept");
+}
+
+}  // namespace
+}  // namespace server
