@@ -74,6 +74,23 @@ TEST_F(MapFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(walls, 100U);
 }
 
+TEST_F(MapFile, ComesBackFromANameThatYamlWouldReadOtherwise) {
+  OccupancyMap map(0.05);
+  map.mark_wall({0.5, 0.5});
+  for (const char* name :
+       {"a #1.yaml", "c: d.yaml", "'e\".yaml", "- f.yaml", "[g].yaml", "plain"}) {
+    write_map(map, folder_ / name);
+    EXPECT_EQ(read_map(folder_ / name).tiles().size(), 1U) << name;
+  }
+}
+
+TEST_F(MapFile, IsNotWrittenOverItsOwnPicture) {
+  OccupancyMap map(0.05);
+  map.mark_wall({0.5, 0.5});
+  EXPECT_THROW(write_map(map, folder_ / "x.pgm"), std::runtime_error);
+  EXPECT_FALSE(fs::exists(folder_ / "x.pgm"));
+}
+
 TEST_F(MapFile, OnlyTheFacesOfThickWallsAreSeen) {
   OccupancyMap map(0.05);
   for (int j = 0; j < 10; ++j) {
