@@ -29,6 +29,8 @@ struct CrowdCommand {
 };
 
 int execute(CrowdCommand command) {
+  refuse_shared_files({{"FILE", command.file}, {"--robot-model", command.flags.robot}},
+                      {{"--tracks", command.tracks}, {"--scenario", command.scenario}});
   const crowd::Recording recording = crowd::read_people(std::filesystem::path(command.file));
   const RunSpec robot = make_spec(find_scenario(kScenario), command.flags.resolved(), own_robots());
   if (!command.scenario.empty()) {

@@ -46,6 +46,7 @@ int run_study(LocateCommand& command) {
 }
 
 int execute(LocateCommand& command) {
+  refuse_shared_files({{"LOG", command.log}, {"--map", command.map}}, {{"--poses", command.poses}});
   if (command.study) {
     if (!command.log.empty()) throw std::runtime_error("--study takes no LOG");
     return run_study(command);

@@ -34,6 +34,19 @@ void write_picture(const mapping::MapStudy& study, const std::string& file) {
   write_text(file, draw_map(study.log, first_path(study), title));
 }
 
+/// Throws std::runtime_error if an output would overwrite a log or another output.
+void refuse_shared(const MapCommand& command) {
+  std::vector<NamedFile> inputs{{"--relations", command.relations}};
+  for (const std::string& log : command.logs) inputs.push_back({"LOG", log});
+  std::vector<NamedFile> outputs{
+      {"--poses", command.poses}, {"--out", command.out}, {"--markdown", command.markdown}};
+  if (!command.map.empty()) {
+    outputs.push_back({"--map", command.map});
+    outputs.push_back({"the picture of --map", picture_beside(command.map)});
+  }
+  refuse_shared_files(inputs, outputs);
+}
+
 /// Options that speak of the path of one log.
 void refuse_several(const MapCommand& command) {
   if (command.logs.size() == 1) return;
@@ -56,6 +69,7 @@ int execute(MapCommand command) {
   if (!command.simulate.empty()) return simulate(command);
   if (command.logs.empty()) throw std::runtime_error("map needs a LOG, or --simulate FILE");
   refuse_several(command);
+  refuse_shared(command);
   const bool wants_path =
       !command.relations.empty() || !command.poses.empty() || !command.map.empty();
   command.options.match = command.options.match || wants_path;
@@ -119,6 +133,7 @@ void add_map_command(Command app, int& status) {
                  "Write the map of the matched path as a YAML file of map_server, its picture "
                  "beside it")
       .check(refuse_unwritable)
+      .check([](const std::string& yaml) { return refuse_unwritable(picture_beside(yaml)); })
       .type_name("FILE");
   map.add_option("--odometry-scale",
                  options.errors.odometry_scale,

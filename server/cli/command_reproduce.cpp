@@ -193,6 +193,8 @@ void add_reproduce_command(Command app, int& status) {
   command.add_flag("--json", options->as_json, "Print JSON");
   command.footer("Exit status: 0 every limit or asserted finding held, 1 bad input, 3 one failed.");
   command.callback([options, &status] {
+    refuse_shared_files({{"--scenarios", options->scenarios}, {"--course", options->course}},
+                        {{"--markdown", options->markdown}});
     status = options->filter   ? execute_filter_study(*options)
              : options->robhaz ? execute_robhaz_study(*options)
              : options->masuda ? execute_masuda_study(*options)

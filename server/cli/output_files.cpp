@@ -1,15 +1,32 @@
-// server/cli/output_files.cpp: tries each output.
+// server/cli/output_files.cpp: tries each output, and compares its path with the others.
 #include "server/cli/output_files.hpp"
 
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <stdexcept>
 #include <system_error>
 
 #include <fmt/format.h>
 
 namespace server {
+namespace {
+
 namespace fs = std::filesystem;
+
+/// A device or a pipe: nothing is lost if two outputs go there.
+bool is_special(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored) && fs::is_other(path, ignored);
+}
+
+bool is_same_file(const fs::path& a, const fs::path& b) {
+  std::error_code missing;
+  if (fs::equivalent(a, b, missing)) return true;
+  return fs::weakly_canonical(fs::absolute(a)) == fs::weakly_canonical(fs::absolute(b));
+}
+
+}  // namespace
 
 std::string refuse_unwritable(const std::string& path) {
   std::error_code ignored;
@@ -35,6 +52,21 @@ std::string refuse_unwritable_document(const std::string& path) {
     first_missing = first_missing.parent_path();
   }
   return refuse_unwritable(first_missing.string());
+}
+
+void refuse_shared_files(const std::vector<NamedFile>& inputs,
+                         const std::vector<NamedFile>& outputs) {
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const NamedFile& output = outputs[i];
+    if (output.path.empty() || is_special(output.path)) continue;
+    const auto refuse = [&](const NamedFile& other, const char* loss) {
+      if (other.path.empty() || !is_same_file(output.path, other.path)) return;
+      throw std::runtime_error(fmt::format(
+          "{} and {} are one file, {}: {}", other.name, output.name, output.path.string(), loss));
+    };
+    for (const NamedFile& input : inputs) refuse(input, "it would be overwritten");
+    for (std::size_t k = 0; k < i; ++k) refuse(outputs[k], "one would overwrite the other");
+  }
 }
 
 }  // namespace server

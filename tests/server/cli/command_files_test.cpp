@@ -63,5 +63,25 @@ TEST_F(CommandFilesTest, AnExportThatFailsKeepsTheOldFile) {
   EXPECT_EQ(read_text(path("old.csv")), "kept");
 }
 
+TEST_F(CommandFilesTest, AnOutputThatWouldOverwriteAnInputIsRefused) {
+  write_text(path("in.log"), "kept");
+  const std::string in = path("in.log");
+  const std::string out = path("out.csv");
+  const auto shared = HasSubstr("are one file");
+  EXPECT_THAT(refusal(add_map_command, {"map", in, "--poses", in}), shared);
+  EXPECT_THAT(refusal(add_map_command, {"map", in, "--map", out, "--out", out}), shared);
+  EXPECT_THAT(
+      refusal(add_map_command, {"map", in, "--map", path("a.yaml"), "--out", path("a.pgm")}),
+      shared);
+  EXPECT_THAT(refusal(add_map_command, {"map", in, "--map", path("a.pgm")}), HasSubstr("picture"));
+  EXPECT_THAT(refusal(add_crowd_command, {"crowd", in, "--tracks", in}), shared);
+  EXPECT_THAT(refusal(add_locate_command, {"locate", in, "--poses", in}), shared);
+  write_text(path("in.json"), "kept");
+  EXPECT_THAT(refusal(add_barn_command, {"barn", path("in.json"), "--rows", path("in.json")}),
+              shared);
+  EXPECT_EQ(read_text(in), "kept");
+  EXPECT_EQ(read_text(path("in.json")), "kept");
+}
+
 }  // namespace
 }  // namespace server

@@ -63,5 +63,26 @@ TEST_F(OutputFilesTest, ADocumentMayLieInNewFolders) {
   EXPECT_THAT(refuse_unwritable_document(path("")), HasSubstr("is a folder"));
 }
 
+TEST_F(OutputFilesTest, OneFileIsNotWrittenTwiceNorOverAnInput) {
+  write_text(path("in.log"), "");
+  fs::create_hard_link(path("in.log"), path("hard"));
+  fs::create_symlink(path("in.log"), path("soft"));
+  const auto refused = [&](const std::string& first, const std::string& second) {
+    try {
+      refuse_shared_files({{"LOG", path("in.log")}}, {{"--poses", first}, {"--out", second}});
+    } catch (const std::runtime_error& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refused(path("a"), path("b")), "");
+  EXPECT_EQ(refused("", ""), "");
+  EXPECT_EQ(refused("/dev/null", "/dev/null"), "");
+  EXPECT_THAT(refused(path("a"), path("new/../a")), HasSubstr("--poses and --out are one file"));
+  for (const char* input : {"in.log", "./in.log", "hard", "soft"}) {
+    EXPECT_THAT(refused("", path(input)), HasSubstr("LOG and --out are one file")) << input;
+  }
+}
+
 }  // namespace
 }  // namespace server
