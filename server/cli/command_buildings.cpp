@@ -132,6 +132,7 @@ void add_buildings_command(Command app, int& status) {
       .add_option("--scenario",
                   command->scenario,
                   "Run nothing: write the first building to this file as a scenario for the page")
+      .excludes(buildings.get_option("--rows"))
       .check(refuse_unwritable)
       .type_name("FILE");
   const Option tour =

@@ -62,15 +62,17 @@ void add_crowd_command(Command app, int& status) {
       .add_option(
           "FILE", command->file, "The people: lines `frame id x y`, 25 frames a second, metres")
       .required();
-  crowd
-      .add_option(
-          "--tracks", command->tracks, "Also write the robot's true pose at each tick, as CSV")
-      .check(refuse_unwritable)
-      .type_name("FILE");
+  const Option tracks =
+      crowd
+          .add_option(
+              "--tracks", command->tracks, "Also write the robot's true pose at each tick, as CSV")
+          .check(refuse_unwritable)
+          .type_name("FILE");
   crowd
       .add_option("--scenario",
                   command->scenario,
                   "Drive nothing: write the first crossing to this file as a scenario for the page")
+      .excludes(tracks)
       .check(refuse_unwritable)
       .type_name("FILE");
   crowd.add_flag("--json", command->as_json, "Print JSON");

@@ -47,10 +47,7 @@ int run_study(LocateCommand& command) {
 
 int execute(LocateCommand& command) {
   refuse_shared_files({{"LOG", command.log}, {"--map", command.map}}, {{"--poses", command.poses}});
-  if (command.study) {
-    if (!command.log.empty()) throw std::runtime_error("--study takes no LOG");
-    return run_study(command);
-  }
+  if (command.study) return run_study(command);
   if (command.log.empty() || command.map.empty()) {
     throw std::runtime_error("locate needs a LOG and --map FILE, or --study");
   }
@@ -105,6 +102,13 @@ void add_locate_command(Command app, int& status) {
       .range<std::size_t>(1, 1000);
   add_threads_option(locate, command->options.pool.threads);
   locate.add_flag("--json", command->as_json, "Print JSON");
+  const Option study = locate.get_option("--study");
+  for (const char* own : {"LOG", "--map", "--start", "--poses"}) {
+    study.excludes(locate.get_option(own));
+  }
+  for (const char* own : {"--markdown", "--wrong", "--seeds", "--threads"}) {
+    locate.get_option(own).needs(study);
+  }
   locate.callback([command, &status] { status = execute(*command); });
 }
 

@@ -159,6 +159,18 @@ void add_map_command(Command app, int& status) {
       .check(refuse_unwritable_document)
       .type_name("FILE");
   map.add_flag("--json", command->as_json, "Print JSON: an object, or an array of several logs'");
+  const Option simulated = map.get_option("--simulate");
+  for (const char* unused : {"--match",
+                             "--relations",
+                             "--poses",
+                             "--map",
+                             "--seeds",
+                             "--threads",
+                             "--out",
+                             "--markdown",
+                             "--json"}) {
+    simulated.excludes(map.get_option(unused));
+  }
   map.callback([command, &status] { status = execute(*command); });
 }
 

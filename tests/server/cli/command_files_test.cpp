@@ -83,5 +83,19 @@ TEST_F(CommandFilesTest, AnOutputThatWouldOverwriteAnInputIsRefused) {
   EXPECT_EQ(read_text(path("in.json")), "kept");
 }
 
+TEST_F(CommandFilesTest, AnOptionWithoutEffectIsRefused) {
+  for (const char* option : {"--poses", "--map", "--out", "--markdown"}) {
+    EXPECT_THAT(
+        refusal(add_map_command, {"map", "--simulate", path("a.log"), option, path("b.yaml")}),
+        AllOf(HasSubstr("--simulate"), HasSubstr(option)));
+  }
+  EXPECT_THAT(refusal(add_map_command, {"map", "--simulate", path("a.log"), "--json"}),
+              HasSubstr("--json"));
+  EXPECT_FALSE(std::filesystem::exists(path("a.log")));
+  EXPECT_THAT(refusal(add_locate_command, {"locate", "x", "--markdown", path("x.md")}),
+              AllOf(HasSubstr("--markdown"), HasSubstr("--study")));
+  EXPECT_THAT(refusal(add_locate_command, {"locate", "x", "--study"}), HasSubstr("LOG"));
+}
+
 }  // namespace
 }  // namespace server
