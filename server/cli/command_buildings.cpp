@@ -84,9 +84,7 @@ int execute(BuildingsCommand command) {
     command.options.kinds.push_back(buildings::kind_named(kind));
   }
   if (!command.scenario.empty()) {
-    const buildings::Building building =
-        buildings::building_of(command.options.first_seed, command.options.controller);
-    write_text(command.scenario, to_json(building.scenario).dump(1) + "\n");
+    write_text(command.scenario, to_json(first_scenario(command.options)).dump(1) + "\n");
     return kReached;
   }
   if (command.tour > 0) return execute_tours(command);
