@@ -152,6 +152,7 @@ int execute(BarnCommand command) {
     write_scenarios(worlds, command.options.conditions, command.scenarios);
     return kReached;
   }
+  refuse_nothing(worlds.size() * command.options.repeats, command.options.pool.shard, "runs");
   barn::Result result;
   {
     ProgressLine progress;

@@ -60,6 +60,9 @@ int execute_tours(const BuildingsCommand& command) {
   for (const std::string& odometry : command.odometries) {
     options.odometries.push_back(buildings::odometry_named(odometry));
   }
+  refuse_nothing(seeds_of(command.options).size() * options.odometries.size(),
+                 command.options.pool.shard,
+                 "tours");
   std::vector<buildings::Tour> tours;
   {
     ProgressLine progress;
@@ -88,6 +91,7 @@ int execute(BuildingsCommand command) {
     return kReached;
   }
   if (command.tour > 0) return execute_tours(command);
+  refuse_nothing(seeds_of(command.options).size(), command.options.pool.shard, "buildings");
   std::vector<buildings::BuildingRun> runs;
   {
     ProgressLine progress;

@@ -92,6 +92,7 @@ int execute_operator(const SoakCommand& command) {
     write_text(command.scenario, to_json(world).dump(1) + "\n");
     return kReached;
   }
+  refuse_nothing(options.worlds * options.robots.size(), options.pool.shard, "drives");
   soak::OperatorStudy study;
   {
     ProgressLine progress;
@@ -138,6 +139,7 @@ int execute_slopes(const SoakCommand& command) {
     write_text(command.scenario, to_json(world).dump(1) + "\n");
     return kReached;
   }
+  refuse_nothing(options.worlds, options.pool.shard, "worlds");
   const std::vector<soak::SlopeRow> rows =
       with_progress(options, "worlds", [](const auto& wanted) { return run_slopes(wanted); });
   if (!command.rows.empty()) write_table(slope_rows(rows), command.rows);
@@ -160,6 +162,7 @@ int execute_courses(const SoakCommand& command) {
     write_text(command.scenario, to_json(course.scenario).dump(1) + "\n");
     return kReached;
   }
+  refuse_nothing(options.worlds, options.pool.shard, "courses");
   const std::vector<soak::CourseRow> rows =
       with_progress(options, "courses", [](const auto& wanted) { return run_courses(wanted); });
   if (!command.rows.empty()) write_table(course_rows(rows), command.rows);
@@ -184,6 +187,7 @@ int execute(SoakCommand command) {
     write_text(command.scenario, to_json(world).dump(1) + "\n");
     return kReached;
   }
+  refuse_nothing(command.options.worlds, command.options.pool.shard, "worlds");
   std::vector<soak::World> worlds;
   {
     ProgressLine progress;

@@ -2,7 +2,10 @@
 #include "server/cli/pool_options.hpp"
 
 #include <exception>
+#include <stdexcept>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "server/cli/output_files.hpp"
 #include "server/experiment/judge.hpp"
@@ -50,6 +53,13 @@ Option add_shard_option(Command command, std::function<void(const experiment::Sh
 void add_pool_options(Command command, experiment::PoolOptions& pool, const std::string& threads) {
   add_threads_option(command, pool.threads, threads);
   add_shard_option(command, [&pool](const experiment::Shard& shard) { pool.shard = shard; });
+}
+
+void refuse_nothing(std::size_t jobs, const experiment::Shard& shard, const std::string& noun) {
+  if (jobs == 0) throw std::runtime_error(fmt::format("These options select no {}.", noun));
+  if (shard.share(jobs) > 0) return;
+  throw std::runtime_error(fmt::format(
+      "--shard {}/{} is empty: the number of {} is {}.", shard.index, shard.count, noun, jobs));
 }
 
 void add_rows_option(Command command, std::string& file) {

@@ -97,5 +97,20 @@ TEST_F(CommandFilesTest, AnOptionWithoutEffectIsRefused) {
   EXPECT_THAT(refusal(add_locate_command, {"locate", "x", "--study"}), HasSubstr("LOG"));
 }
 
+TEST_F(CommandFilesTest, ACommandThatSelectsNothingIsRefused) {
+  const auto buildings = [](std::vector<std::string> options) {
+    options.insert(options.begin(), "buildings");
+    return refusal(add_buildings_command, options);
+  };
+  EXPECT_EQ(buildings({"--seeds", "1-1", "--kinds", "maze"}), "These options select no buildings.");
+  EXPECT_EQ(buildings({"--tour", "3", "--seeds", "6-6", "--kinds", "flat"}),
+            "These options select no tours.");
+  EXPECT_THAT(buildings({"--seeds", "1-1", "--shard", "1/2"}),
+              HasSubstr("is empty: the number of buildings is 1"));
+  EXPECT_THAT(buildings({"--seeds", "1-1", "--kinds", "maze", "--scenario", path("s.json")}),
+              HasSubstr("no building"));
+  EXPECT_FALSE(std::filesystem::exists(path("s.json")));
+}
+
 }  // namespace
 }  // namespace server
