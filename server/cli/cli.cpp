@@ -64,7 +64,6 @@ RunOverrides RunFlags::resolved(const RobotLibrary& robots) const {
   }
   if (!hand_goal.empty()) out.hand_goal = hand_goal_from_text(hand_goal, "--hand-goal");
   if (!joints.empty()) out.joints = joints_from_text(joints, "--joints");
-  if (overrides.lost && map.empty()) throw DocumentError("--lost", "needs --map FILE");
   if (!map.empty()) out.map = known_map(map);
   out.parameters = parameters_set(settings);
   return out;
