@@ -200,8 +200,13 @@ algo::Submap seen_walls(const algo::OccupancyMap& map) {
 }
 
 algo::OccupancyMap read_map(const std::filesystem::path& yaml) {
-  return map_from(read_text(yaml), yaml.filename().string(), [&yaml](const std::string& image) {
-    return read_text(yaml.parent_path() / image);
+  const std::string name = yaml.filename().string();
+  return map_from(read_text(yaml), name, [&](const std::string& image) {
+    try {
+      return read_text(yaml.parent_path() / image);
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error(name + ": image: " + error.what());
+    }
   });
 }
 

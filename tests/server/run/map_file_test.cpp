@@ -135,6 +135,9 @@ TEST_F(MapFile, BadFilesAreRefusedWithASentence) {
   EXPECT_THAT(complaint(good, "P2\n1 1\n255\n256\n"), testing::HasSubstr("up to 255"));
   EXPECT_THAT(complaint(good, "P5\n99999 99999\n255\n"), testing::HasSubstr("64 million pixels"));
   EXPECT_THAT(complaint(good, "P2\n1 1\n255\n254\n"), testing::HasSubstr("shows no wall"));
+  EXPECT_THAT(complaint("image: .\nresolution: 1\norigin: [0, 0, 0]\n", picture),
+              testing::AllOf(testing::StartsWith("bad.yaml: image: "),
+                             testing::EndsWith(": is a folder, not a file")));
   EXPECT_THROW(read_map(folder_ / "none.yaml"), std::runtime_error);
 }
 
