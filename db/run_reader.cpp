@@ -2,6 +2,8 @@
 #include "db/run_reader.hpp"
 
 #include <algorithm>
+#include <cerrno>
+#include <filesystem>
 #include <limits>
 
 #include <unistd.h>
@@ -72,6 +74,14 @@ std::int64_t signed_tick(std::uint64_t tick) {
 }
 
 Connection open_for_reading(const std::string& path) {
+  if (::access(path.c_str(), F_OK) != 0 && (errno == ENOENT || errno == ENOTDIR)) {
+    throw DatabaseError("Cannot open the run store " + path + ": there is no such file.",
+                        Trouble::Refused);
+  }
+  if (std::filesystem::is_directory(path)) {
+    throw DatabaseError("Cannot open the run store " + path + ": it is a folder.",
+                        Trouble::Refused);
+  }
   Connection connection(path, Connection::Mode::Read);
   try {
     detail::require_readable(connection);

@@ -64,7 +64,6 @@ RunOverrides RunFlags::resolved(const RobotLibrary& robots) const {
   }
   if (!hand_goal.empty()) out.hand_goal = hand_goal_from_text(hand_goal, "--hand-goal");
   if (!joints.empty()) out.joints = joints_from_text(joints, "--joints");
-  if (overrides.lost && map.empty()) throw DocumentError("--lost", "needs --map FILE");
   if (!map.empty()) out.map = known_map(map);
   out.parameters = parameters_set(settings);
   return out;
@@ -111,11 +110,6 @@ sim::Scenario find_scenario(const std::string& name) {
   if (names_file(name)) return ScenarioLibrary::from_file(name, own_robots());
   return ScenarioLibrary(state_folder() / "scenarios", state_folder() / "logs", own_robots())
       .load(name);
-}
-
-std::string refuse_folder(const std::string& path) {
-  if (!std::filesystem::is_directory(path)) return {};
-  return path + " is a folder: name the file to write";
 }
 
 ProgressLine::ProgressLine() : interactive_(isatty(STDERR_FILENO) != 0) {}

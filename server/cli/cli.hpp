@@ -80,9 +80,6 @@ struct RunFlags {
 /// Loads `name`: a path if such a file exists or it looks like a path, else a name of the library.
 sim::Scenario find_scenario(const std::string& name);
 
-/// A check for an output path, which refuses a folder at once and not after minutes of work.
-std::string refuse_folder(const std::string& path);
-
 /// Progress on standard error, only if that is a terminal.
 class ProgressLine {
  public:

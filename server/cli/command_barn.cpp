@@ -9,6 +9,7 @@
 #include "algo/driving.hpp"
 #include "algo/strip/strip_law.hpp"
 #include "server/cli/cli.hpp"
+#include "server/cli/output_files.hpp"
 #include "server/cli/pool_options.hpp"
 #include "server/lab/barn/barn_run.hpp"
 #include "server/run/scenario_json.hpp"
@@ -132,6 +133,8 @@ void write_scenarios(const std::vector<barn::World>& worlds,
 }
 
 int execute(BarnCommand command) {
+  refuse_shared_files({{"FILE", command.file}, {"--robot-model", command.robot}},
+                      {{"--rows", command.rows}});
   std::vector<barn::World> worlds = barn::read_worlds(command.file);
   if (!command.only.empty()) {
     worlds = barn::worlds_numbered(std::move(worlds), command.only);
@@ -149,6 +152,7 @@ int execute(BarnCommand command) {
     write_scenarios(worlds, command.options.conditions, command.scenarios);
     return kReached;
   }
+  refuse_nothing(worlds.size() * command.options.repeats, command.options.pool.shard, "runs");
   barn::Result result;
   {
     ProgressLine progress;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
+#include "server/cli/output_files.hpp"
 #include "server/cli/pool_options.hpp"
 #include "server/lab/buildings/building_study.hpp"
 #include "server/lab/buildings/tour_study.hpp"
@@ -59,6 +60,9 @@ int execute_tours(const BuildingsCommand& command) {
   for (const std::string& odometry : command.odometries) {
     options.odometries.push_back(buildings::odometry_named(odometry));
   }
+  refuse_nothing(seeds_of(command.options).size() * options.odometries.size(),
+                 command.options.pool.shard,
+                 "tours");
   std::vector<buildings::Tour> tours;
   {
     ProgressLine progress;
@@ -83,12 +87,11 @@ int execute(BuildingsCommand command) {
     command.options.kinds.push_back(buildings::kind_named(kind));
   }
   if (!command.scenario.empty()) {
-    const buildings::Building building =
-        buildings::building_of(command.options.first_seed, command.options.controller);
-    write_text(command.scenario, to_json(building.scenario).dump(1) + "\n");
+    write_text(command.scenario, to_json(first_scenario(command.options)).dump(1) + "\n");
     return kReached;
   }
   if (command.tour > 0) return execute_tours(command);
+  refuse_nothing(seeds_of(command.options).size(), command.options.pool.shard, "buildings");
   std::vector<buildings::BuildingRun> runs;
   {
     ProgressLine progress;
@@ -131,6 +134,8 @@ void add_buildings_command(Command app, int& status) {
       .add_option("--scenario",
                   command->scenario,
                   "Run nothing: write the first building to this file as a scenario for the page")
+      .excludes(buildings.get_option("--rows"))
+      .check(refuse_unwritable)
       .type_name("FILE");
   const Option tour =
       buildings

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
+#include "server/cli/output_files.hpp"
 #include "server/cli/pool_options.hpp"
 #include "server/lab/compare/report.hpp"
 
@@ -75,6 +76,9 @@ void add_compare_command(Command app, int& status) {
                   command->markdown,
                   "Also write comparison.md to this folder, and the table of the worlds into its "
                   "controllers.md")
+      .check([](const std::string& folder) {
+        return refuse_unwritable_document(folder + "/comparison.md");
+      })
       .type_name("DIR");
   compare.add_flag("--json", command->as_json, "Print JSON");
   std::string footer = "Judges:\n";

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/cli/cli.hpp"
+#include "server/cli/output_files.hpp"
 #include "server/cli/pool_options.hpp"
 #include "server/lab/crowd/crowd_scenario.hpp"
 #include "server/lab/crowd/crowd_study.hpp"
@@ -45,6 +46,8 @@ void write_scenario(const crowd::Recording& recording,
 }
 
 int execute(CrowdCommand command) {
+  refuse_shared_files({{"FILE", command.file}, {"--robot-model", command.flags.robot}},
+                      {{"--tracks", command.tracks}, {"--scenario", command.scenario}});
   const crowd::Recording recording = crowd::read_people(std::filesystem::path(command.file));
   const RunSpec robot = make_spec(find_scenario(kScenario), command.flags.resolved(), own_robots());
   if (!command.scenario.empty()) {
@@ -76,16 +79,18 @@ void add_crowd_command(Command app, int& status) {
       .add_option(
           "FILE", command->file, "The people: lines `frame id x y`, 25 frames a second, metres")
       .required();
-  crowd
-      .add_option(
-          "--tracks", command->tracks, "Also write the robot's true pose at each tick, as CSV")
-      .check(refuse_folder)
-      .type_name("FILE");
+  const Option tracks =
+      crowd
+          .add_option(
+              "--tracks", command->tracks, "Also write the robot's true pose at each tick, as CSV")
+          .check(refuse_unwritable)
+          .type_name("FILE");
   crowd
       .add_option("--scenario",
                   command->scenario,
                   "Drive nothing: write the first crossing to this file as a scenario for the page")
-      .check(refuse_folder)
+      .excludes(tracks)
+      .check(refuse_unwritable)
       .type_name("FILE");
   crowd.add_flag("--json", command->as_json, "Print JSON");
   command->flags.add_to(crowd);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
+#include "server/cli/output_files.hpp"
 #include "server/cli/pool_options.hpp"
 #include "server/lab/mapping/locate_log.hpp"
 #include "server/lab/mapping/locate_study.hpp"
@@ -45,10 +46,8 @@ int run_study(LocateCommand& command) {
 }
 
 int execute(LocateCommand& command) {
-  if (command.study) {
-    if (!command.log.empty()) throw std::runtime_error("--study takes no LOG");
-    return run_study(command);
-  }
+  refuse_shared_files({{"LOG", command.log}, {"--map", command.map}}, {{"--poses", command.poses}});
+  if (command.study) return run_study(command);
   if (command.log.empty() || command.map.empty()) {
     throw std::runtime_error("locate needs a LOG and --map FILE, or --study");
   }
@@ -84,7 +83,7 @@ void add_locate_command(Command app, int& status) {
                   command->poses,
                   "Write the poses of the scans at which the robot was located: lines of stamp, x, "
                   "y [m], theta [rad]")
-      .check(refuse_folder)
+      .check(refuse_unwritable)
       .type_name("FILE");
   locate.add_flag("--study",
                   command->study,
@@ -95,7 +94,7 @@ void add_locate_command(Command app, int& status) {
                   command->markdown,
                   "Also write the study's table to this file, and pictures into pictures/maps/ "
                   "beside it")
-      .check(refuse_folder)
+      .check(refuse_unwritable_document)
       .type_name("FILE");
   locate.add_option("--wrong", command->options.wrong, "That part of the map (default 0.1)")
       .range(0.0, 0.5);
@@ -103,6 +102,13 @@ void add_locate_command(Command app, int& status) {
       .range<std::size_t>(1, 1000);
   add_threads_option(locate, command->options.pool.threads);
   locate.add_flag("--json", command->as_json, "Print JSON");
+  const Option study = locate.get_option("--study");
+  for (const char* own : {"LOG", "--map", "--start", "--poses"}) {
+    study.excludes(locate.get_option(own));
+  }
+  for (const char* own : {"--markdown", "--wrong", "--seeds", "--threads"}) {
+    locate.get_option(own).needs(study);
+  }
   locate.callback([command, &status] { status = execute(*command); });
 }
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
+#include "server/cli/output_files.hpp"
 #include "server/cli/pool_options.hpp"
 #include "server/lab/mapping/long_building.hpp"
 #include "server/lab/mapping/map_study.hpp"
@@ -33,6 +34,19 @@ void write_picture(const mapping::MapStudy& study, const std::string& file) {
   write_text(file, draw_map(study.log, first_path(study), title));
 }
 
+/// Throws std::runtime_error if an output would overwrite a log or another output.
+void refuse_shared(const MapCommand& command) {
+  std::vector<NamedFile> inputs{{"--relations", command.relations}};
+  for (const std::string& log : command.logs) inputs.push_back({"LOG", log});
+  std::vector<NamedFile> outputs{
+      {"--poses", command.poses}, {"--out", command.out}, {"--markdown", command.markdown}};
+  if (!command.map.empty()) {
+    outputs.push_back({"--map", command.map});
+    outputs.push_back({"the picture of --map", picture_beside(command.map)});
+  }
+  refuse_shared_files(inputs, outputs);
+}
+
 /// Options that speak of the path of one log.
 void refuse_several(const MapCommand& command) {
   if (command.logs.size() == 1) return;
@@ -55,6 +69,7 @@ int execute(MapCommand command) {
   if (!command.simulate.empty()) return simulate(command);
   if (command.logs.empty()) throw std::runtime_error("map needs a LOG, or --simulate FILE");
   refuse_several(command);
+  refuse_shared(command);
   const bool wants_path =
       !command.relations.empty() || !command.poses.empty() || !command.map.empty();
   command.options.match = command.options.match || wants_path;
@@ -100,7 +115,7 @@ void add_map_command(Command app, int& status) {
                  command->simulate,
                  "Instead of mapping, write the log of a simulated drive through a building of "
                  "300 m with loops of 500 m to FILE, and its true relations beside it")
-      .check(refuse_folder)
+      .check(refuse_unwritable)
       .type_name("FILE");
   map.add_option("--relations",
                  command->relations,
@@ -111,13 +126,14 @@ void add_map_command(Command app, int& status) {
   map.add_option("--poses",
                  command->poses,
                  "Write the matched path of the first seed: lines of stamp, x, y [m], theta [rad]")
-      .check(refuse_folder)
+      .check(refuse_unwritable)
       .type_name("FILE");
   map.add_option("--map",
                  command->map,
                  "Write the map of the matched path as a YAML file of map_server, its picture "
                  "beside it")
-      .check(refuse_folder)
+      .check(refuse_unwritable)
+      .check([](const std::string& yaml) { return refuse_unwritable(picture_beside(yaml)); })
       .type_name("FILE");
   map.add_option("--odometry-scale",
                  options.errors.odometry_scale,
@@ -135,14 +151,26 @@ void add_map_command(Command app, int& status) {
       .range(1, 1000);
   add_threads_option(map, options.threads);
   map.add_option("--out", command->out, "A picture of the first seed's map, as SVG")
-      .check(refuse_folder)
+      .check(refuse_unwritable)
       .type_name("FILE");
   map.add_option("--markdown",
                  command->markdown,
                  "Also write tables to this file, and pictures into pictures/mapping/ beside it")
-      .check(refuse_folder)
+      .check(refuse_unwritable_document)
       .type_name("FILE");
   map.add_flag("--json", command->as_json, "Print JSON: an object, or an array of several logs'");
+  const Option simulated = map.get_option("--simulate");
+  for (const char* unused : {"--match",
+                             "--relations",
+                             "--poses",
+                             "--map",
+                             "--seeds",
+                             "--threads",
+                             "--out",
+                             "--markdown",
+                             "--json"}) {
+    simulated.excludes(map.get_option(unused));
+  }
   map.callback([command, &status] { status = execute(*command); });
 }
 

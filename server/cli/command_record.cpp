@@ -7,6 +7,7 @@
 
 #include "db/run_reader.hpp"
 #include "server/cli/cli.hpp"
+#include "server/cli/output_files.hpp"
 #include "server/record/run_csv.hpp"
 #include "server/record/run_json.hpp"
 #include "server/record/verify.hpp"
@@ -34,17 +35,17 @@ std::shared_ptr<RecordCommand> add_common(Command command) {
 
 int export_run(const RecordCommand& options) {
   db::RunReader reader(options.database);
+  const auto row = reader.get(options.run);
+  if (!row) {
+    throw std::runtime_error(
+        fmt::format("There is no run {} in {}.", options.run, options.database));
+  }
   std::FILE* out = stdout;
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(nullptr, &std::fclose);
   if (!options.output.empty()) {
     file.reset(std::fopen(options.output.c_str(), "wb"));
     if (!file) throw std::runtime_error(fmt::format("Cannot write {}.", options.output));
     out = file.get();
-  }
-  const auto row = reader.get(options.run);
-  if (!row) {
-    throw std::runtime_error(
-        fmt::format("There is no run {} in {}.", options.run, options.database));
   }
   ProgressLine progress;
   const RunCsv csv(reader, *row, options.csv);
@@ -102,7 +103,8 @@ void add_export_command(Command app, int& status) {
   const Command command = app.add_subcommand("export", "Write a stored run as a table");
   auto options = add_common(command);
   command.add_option("--format", options->format, "csv").one_of({"csv"});
-  command.add_option("--output,-o", options->output, "File to write (default: standard output)");
+  command.add_option("--output,-o", options->output, "File to write (default: standard output)")
+      .check(refuse_unwritable);
   command.add_flag("--units", options->csv.units, "Name the columns with their units: \"t [s]\"");
   command.add_flag("--arrays",
                    options->csv.arrays,

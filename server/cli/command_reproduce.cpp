@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
+#include "server/cli/output_files.hpp"
 #include "server/cli/pool_options.hpp"
 #include "server/lab/reproduce/arm_study.hpp"
 #include "server/lab/reproduce/filter_study.hpp"
@@ -150,7 +151,7 @@ void add_reproduce_command(Command app, int& status) {
       .add_option("--markdown",
                   options->markdown,
                   "Also write the report to this file, and pictures/reproduction/ beside it")
-      .check(refuse_folder)
+      .check(refuse_unwritable_document)
       .type_name("FILE");
   const Option filter = command.add_flag(
       "--filter", options->filter, "Run the filter chapter instead: scenes, recordings, verdicts");
@@ -192,6 +193,8 @@ void add_reproduce_command(Command app, int& status) {
   command.add_flag("--json", options->as_json, "Print JSON");
   command.footer("Exit status: 0 every limit or asserted finding held, 1 bad input, 3 one failed.");
   command.callback([options, &status] {
+    refuse_shared_files({{"--scenarios", options->scenarios}, {"--course", options->course}},
+                        {{"--markdown", options->markdown}});
     status = options->filter   ? execute_filter_study(*options)
              : options->robhaz ? execute_robhaz_study(*options)
              : options->masuda ? execute_masuda_study(*options)

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
+#include "server/cli/output_files.hpp"
 #include "server/cli/pool_options.hpp"
 #include "server/lab/soak/course_study.hpp"
 #include "server/lab/soak/indoor_world.hpp"
@@ -91,6 +92,7 @@ int execute_operator(const SoakCommand& command) {
     write_text(command.scenario, to_json(world).dump(1) + "\n");
     return kReached;
   }
+  refuse_nothing(options.worlds * options.robots.size(), options.pool.shard, "drives");
   soak::OperatorStudy study;
   {
     ProgressLine progress;
@@ -137,6 +139,7 @@ int execute_slopes(const SoakCommand& command) {
     write_text(command.scenario, to_json(world).dump(1) + "\n");
     return kReached;
   }
+  refuse_nothing(options.worlds, options.pool.shard, "worlds");
   const std::vector<soak::SlopeRow> rows =
       with_progress(options, "worlds", [](const auto& wanted) { return run_slopes(wanted); });
   if (!command.rows.empty()) write_table(slope_rows(rows), command.rows);
@@ -159,6 +162,7 @@ int execute_courses(const SoakCommand& command) {
     write_text(command.scenario, to_json(course.scenario).dump(1) + "\n");
     return kReached;
   }
+  refuse_nothing(options.worlds, options.pool.shard, "courses");
   const std::vector<soak::CourseRow> rows =
       with_progress(options, "courses", [](const auto& wanted) { return run_courses(wanted); });
   if (!command.rows.empty()) write_table(course_rows(rows), command.rows);
@@ -183,6 +187,7 @@ int execute(SoakCommand command) {
     write_text(command.scenario, to_json(world).dump(1) + "\n");
     return kReached;
   }
+  refuse_nothing(command.options.worlds, command.options.pool.shard, "worlds");
   std::vector<soak::World> worlds;
   {
     ProgressLine progress;
@@ -221,6 +226,7 @@ void add_soak_command(Command app, int& status) {
   soak.add_option("--scenario",
                   command->scenario,
                   "Run nothing: write the first world to this file as a scenario for the page")
+      .check(refuse_unwritable)
       .type_name("FILE");
   soak.add_flag("--operator",
                 command->by_hand,

@@ -1,15 +1,50 @@
 // server/cli/options.cpp: passes everything on to CLI11.
 #include "server/cli/options.hpp"
 
+#include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
 namespace server {
+namespace {
+
+/// The type of one value of an option.
+template <typename T>
+struct Single {
+  using Type = T;
+};
+template <typename T>
+struct Single<std::optional<T>> {
+  using Type = T;
+};
+template <typename T>
+struct Single<std::vector<T>> {
+  using Type = T;
+};
+
+/// CLI11 reads "-1" for an unsigned variable as 18446744073709551615.
+std::string refuse_negative(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(" \t");
+  const bool negative = begin != std::string::npos && text[begin] == '-';
+  return negative ? text + " must not be negative" : "";
+}
+
+/// No comparison with the ends of a range refuses "nan".
+std::string refuse_not_finite(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  const bool number = end != text.c_str() && *end == '\0';
+  return number && !std::isfinite(value) ? text + " must be a finite number" : "";
+}
+
+}  // namespace
 
 Option Option::required() const {
   option_->required();
@@ -71,7 +106,11 @@ Option Option::check(std::function<std::string(const std::string&)> complaint,
 
 template <typename T>
 Option Command::add_option(const std::string& names, T& variable, const std::string& help) const {
-  return Option(*app_->add_option(names, variable, help));
+  const Option option(*app_->add_option(names, variable, help));
+  using Number = typename Single<T>::Type;
+  if constexpr (std::is_unsigned_v<Number>) return option.check(refuse_negative);
+  if constexpr (std::is_floating_point_v<Number>) return option.check(refuse_not_finite);
+  return option;
 }
 
 Option Command::add_option_function(const std::string& names,

@@ -53,7 +53,8 @@ class Command {
   explicit Command(CLI::App& app) : app_(&app) {}
 
   /// `names`: "--long,-s" for an option, "NAME" for a positional argument. `variable` must live
-  /// until the arguments have been parsed. T: a type that options.cpp lists at its end.
+  /// until the arguments have been parsed. T: a type that options.cpp lists at its end. Refuses
+  /// negative values of unsigned types, and floating-point numbers that are not finite.
   template <typename T>
   Option add_option(const std::string& names, T& variable, const std::string& help) const;
   /// `take` gets the value once it has passed its checks.

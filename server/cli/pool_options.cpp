@@ -2,9 +2,12 @@
 #include "server/cli/pool_options.hpp"
 
 #include <exception>
+#include <stdexcept>
 #include <utility>
 
-#include "server/cli/cli.hpp"
+#include <fmt/format.h>
+
+#include "server/cli/output_files.hpp"
 #include "server/experiment/judge.hpp"
 #include "server/experiment/table.hpp"
 
@@ -52,14 +55,21 @@ void add_pool_options(Command command, experiment::PoolOptions& pool, const std:
   add_shard_option(command, [&pool](const experiment::Shard& shard) { pool.shard = shard; });
 }
 
+void refuse_nothing(std::size_t jobs, const experiment::Shard& shard, const std::string& noun) {
+  if (jobs == 0) throw std::runtime_error(fmt::format("These options select no {}.", noun));
+  if (shard.share(jobs) > 0) return;
+  throw std::runtime_error(fmt::format(
+      "--shard {}/{} is empty: the number of {} is {}.", shard.index, shard.count, noun, jobs));
+}
+
 void add_rows_option(Command command, std::string& file) {
   command.add_option("--rows", file, "Also write every run with every figure to this file")
-      .check(refuse_folder)
       .check([](const std::string& path) -> std::string {
         return experiment::is_table_file(path)
                    ? ""
                    : path + ": must end in .txt, .md, .csv, .tex or .json";
       })
+      .check(refuse_unwritable)
       .type_name("FILE");
 }
 

@@ -13,6 +13,9 @@ namespace server {
 void add_pool_options(Command command, experiment::PoolOptions& pool, const std::string& threads);
 /// --shard I/N; `take` gets what is given.
 Option add_shard_option(Command command, std::function<void(const experiment::Shard&)> take);
+/// Throws std::runtime_error if the options select no job, or the shard holds none of them.
+/// `noun`: "runs".
+void refuse_nothing(std::size_t jobs, const experiment::Shard& shard, const std::string& noun);
 /// --threads of a study.
 void add_threads_option(Command command, unsigned& threads, const std::string& name = "--threads");
 /// --first-seed.

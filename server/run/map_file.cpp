@@ -219,8 +219,13 @@ algo::Submap seen_walls(const algo::OccupancyMap& map) {
 }
 
 algo::OccupancyMap read_map(const std::filesystem::path& yaml) {
-  return map_from(read_text(yaml), yaml.filename().string(), [&yaml](const std::string& image) {
-    return read_text(yaml.parent_path() / image);
+  const std::string name = yaml.filename().string();
+  return map_from(read_text(yaml), name, [&](const std::string& image) {
+    try {
+      return read_text(yaml.parent_path() / image);
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error(name + ": image: " + error.what());
+    }
   });
 }
 
@@ -244,7 +249,16 @@ std::string map_document(const algo::OccupancyMap& map, const std::string& name)
   return out.dump();
 }
 
+std::filesystem::path picture_beside(const std::filesystem::path& yaml) {
+  std::filesystem::path picture = yaml;
+  picture.replace_extension(".pgm");
+  if (picture != yaml) return picture;
+  throw std::runtime_error(
+      yaml.string() + ": is the name of the map's picture; end that of its description in .yaml");
+}
+
 void write_map(const algo::OccupancyMap& map, const std::filesystem::path& yaml) {
+  const std::filesystem::path picture = picture_beside(yaml);
   const Raster raster(map);
   if (raster.cells.empty()) {
     throw std::runtime_error("The map is empty, so there is none to write.");
@@ -258,13 +272,13 @@ void write_map(const algo::OccupancyMap& map, const std::filesystem::path& yaml)
       grey.push_back(kGreys.at(static_cast<std::size_t>(raster.cells[k])));
     }
   }
-  std::filesystem::path picture = yaml;
-  picture.replace_extension(".pgm");
+  YAML::Emitter image;  // quotes a name such as "room #2.pgm"
+  image << picture.filename().string();
   write_text(picture, fmt::format("P5\n{} {}\n255\n", raster.width, raster.height) + grey);
   write_text(yaml,
              fmt::format("image: {}\nresolution: {}\norigin: [{:.6f}, {:.6f}, 0]\nnegate: 0\n"
                          "occupied_thresh: {}\nfree_thresh: {}\n",
-                         picture.filename().string(),
+                         image.c_str(),
                          map.cell_edge(),
                          raster.corner_M.x(),
                          raster.corner_M.y(),

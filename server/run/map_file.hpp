@@ -29,8 +29,12 @@ algo::Submap seen_walls(const algo::OccupancyMap& map);
 /// corner as pairs of kind and number, one after the other: 0 unknown, 1 free, 2 wall.
 std::string map_document(const algo::OccupancyMap& map, const std::string& name);
 
-/// Writes the known cells to the picture of the same name with the ending ".pgm", and to `yaml`
-/// the cell and the origin. Throws std::runtime_error.
+/// The picture that write_map() puts beside `yaml`: the same name with the ending ".pgm". Throws
+/// std::runtime_error if that is `yaml` itself.
+std::filesystem::path picture_beside(const std::filesystem::path& yaml);
+
+/// Writes the known cells to picture_beside(yaml), and to `yaml` the cell and the origin. Throws
+/// std::runtime_error.
 void write_map(const algo::OccupancyMap& map, const std::filesystem::path& yaml);
 
 }  // namespace server

@@ -135,6 +135,9 @@ void choose_arm(sim::Scenario& scenario, const RunOverrides& overrides) {
 std::shared_ptr<const KnownMap> choose_map(sim::Scenario& scenario, const RunOverrides& overrides) {
   scenario.lost = scenario.lost || overrides.lost;
   if (overrides.map) scenario.map = overrides.map->path;
+  if (overrides.lost && !overrides.map && scenario.map.empty()) {
+    throw DocumentError("--lost", "needs --map FILE, or a scenario that names its map");
+  }
   if (overrides.map || scenario.map.empty()) return overrides.map;
   if (!std::filesystem::path(scenario.map).has_parent_path()) {
     throw DocumentError("map", "can be read only beside the scenario's file");

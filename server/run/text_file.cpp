@@ -9,6 +9,10 @@
 namespace server {
 
 std::string read_text(const std::filesystem::path& file) {
+  std::error_code missing;
+  if (std::filesystem::is_directory(file, missing)) {
+    throw std::runtime_error(file.string() + ": is a folder, not a file");
+  }
   std::ifstream in(file, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(in), {}};
   if (!in.is_open() || in.bad()) throw std::runtime_error(file.string() + ": cannot be read");

@@ -307,7 +307,10 @@ TEST_F(RunStoreTest, ACutRunIsQueuedAgainFromItsStart) {
 TEST_F(RunStoreTest, SaysWhyAFileCannotBeOpened) {
   const std::string missing = (folder / "no" / "runs.db").string();
   EXPECT_THAT(refusal([&] { const RunStore store(missing); }), HasSubstr("folder is missing"));
-  EXPECT_THAT(refusal([&] { const RunReader reader(missing); }), HasSubstr("Cannot open"));
+  EXPECT_THAT(refusal([&] { const RunReader reader(missing); }), HasSubstr("no such file"));
+  EXPECT_THAT(refusal([&] { const RunReader reader((folder / "no.db").string()); }),
+              HasSubstr("no.db: there is no such file."));
+  EXPECT_THAT(refusal([&] { const RunReader reader(folder.string()); }), HasSubstr("a folder"));
 
   const std::string text = (folder / "text.db").string();
   std::ofstream(text) << std::string(20'000, 'x');

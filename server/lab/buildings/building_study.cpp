@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
@@ -83,6 +84,14 @@ std::vector<std::uint64_t> seeds_of(const Options& options) {
     if (wanted) seeds.push_back(seed);
   }
   return seeds;
+}
+
+sim::Scenario first_scenario(const Options& options) {
+  const std::vector<std::uint64_t> seeds = seeds_of(options);
+  if (seeds.empty()) throw std::invalid_argument("no building has these seeds and kinds");
+  Building building = building_of(seeds.front(), options.controller);
+  building.scenario.time_limit = limit_of(truth_of(building));
+  return std::move(building.scenario);
 }
 
 std::string_view name(End end) {

@@ -26,6 +26,10 @@ struct Options {
 /// The seeds of the wanted kinds.
 std::vector<std::uint64_t> seeds_of(const Options& options);
 
+/// The first of the chosen buildings, with the time limit of its run. Throws std::invalid_argument
+/// if none is chosen.
+sim::Scenario first_scenario(const Options& options);
+
 /// How a run ended.
 enum class End : std::uint8_t {
   Reached,

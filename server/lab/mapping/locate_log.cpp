@@ -59,23 +59,23 @@ void write_poses(const Recording& log, const LocatedLog& found, const std::files
 }
 
 nlohmann::json to_json(const LocatedLog& found) {
-  nlohmann::json out = {{"scans", found.poses_M.size()},
-                        {"located", found.located},
-                        {"deviation_m", found.deviation},
-                        {"fix", found.last}};
+  nlohmann::json out = {
+      {"scans", found.poses_M.size()}, {"located", found.located}, {"fix", found.last}};
+  out["deviation_m"] =
+      found.located > 0 ? nlohmann::json(found.deviation) : nlohmann::json(nullptr);
   out["first_located"] = found.first ? nlohmann::json(*found.first) : nlohmann::json(nullptr);
   return out;
 }
 
 std::string to_text(const LocatedLog& found) {
-  return fmt::format(
-      "Located at {} of {} scans, first at scan {}; standard deviation {:.3f} m in the mean.\n"
-      "At the end: {}",
-      found.located,
-      found.poses_M.size(),
-      found.first ? fmt::format("{}", *found.first + 1) : "-",
-      found.deviation,
-      found.last);
+  std::string text = fmt::format("Located at {} of {} scans", found.located, found.poses_M.size());
+  if (found.first) {
+    text +=
+        fmt::format(", first at scan {}, counted from 0; standard deviation {:.3f} m in the mean",
+                    *found.first,
+                    found.deviation);
+  }
+  return text + ".\nAt the end: " + found.last;
 }
 
 }  // namespace server::mapping

@@ -18,8 +18,8 @@ namespace server::mapping {
 struct LocatedLog {
   std::vector<std::optional<algo::Pose2>> poses_M{};  // one per scan; empty where not located
   std::size_t located = 0;                            // scans
-  std::optional<std::size_t> first{};                 // scan at which the robot was located
-  double deviation = 0;                               // [m] mean, of the located poses
+  std::optional<std::size_t> first{};                 // scan at which it was located, from 0
+  double deviation = 0;                               // [m] mean, of the located poses, if any
   std::string last{};                                 // the fix at the end, in words
 };
 

@@ -126,6 +126,12 @@ void write_long_building(const std::filesystem::path& file,
                          std::uint64_t seed,
                          const sim::DriveConfig& errors) {
   if (const auto problem = sim::defect(errors)) throw std::invalid_argument(*problem);
+  const std::filesystem::path relations =
+      std::filesystem::path(file).replace_extension(".relations");
+  if (relations == file) {
+    throw std::invalid_argument(
+        file.string() + ": is the name of the log's relations; end that of the log in .log");
+  }
   CorridorWalls walls(seed);
   put_up(walls);
   sim::RangeCaster caster;
@@ -151,7 +157,7 @@ void write_long_building(const std::filesystem::path& file,
     log += fmt::format(" {} {} {:.6f} simulated {:.6f}\n", place, place, stamp, stamp);
   }
   write_text(file, log);
-  write_text(std::filesystem::path(file).replace_extension(".relations"), relations_of(path_W));
+  write_text(relations, relations_of(path_W));
 }
 
 }  // namespace server::mapping

@@ -78,6 +78,14 @@ TEST(Buildings, AreTheSameForTheSameSeedAndValidScenarios) {
   EXPECT_NE(to_json(building_of(1, "strip").scenario), to_json(building_of(2, "strip").scenario));
 }
 
+TEST(Buildings, TheScenarioIsTheFirstOfTheChosenWithTheLimitOfItsRun) {
+  const sim::Scenario hall = first_scenario({.kinds = {Kind::Hall}});
+  EXPECT_EQ(hall.title, "Building 3: hall");
+  EXPECT_EQ(hall.time_limit, limit_of(truth_of(building_of(3, "strip"))));
+  EXPECT_THROW(first_scenario({.first_seed = 1, .last_seed = 1, .kinds = {Kind::Maze}}),
+               std::invalid_argument);
+}
+
 /// Its cells are as wide as its doors: start and goal once fell on one place, and the thing about
 /// the goal had a negative length.
 TEST(Buildings, OfNarrowCellsHaveAGoalAwayFromTheStart) {

@@ -18,6 +18,21 @@ TEST(StartOf, IsThreeNumbers) {
   }
 }
 
+TEST(LocatedLog, NamesItsScansAlikeInTextAndJson) {
+  LocatedLog found;
+  found.poses_M.resize(3);
+  found.last = "The robot is nowhere.";
+  EXPECT_TRUE(to_json(found)["deviation_m"].is_null());
+  EXPECT_TRUE(to_json(found)["first_located"].is_null());
+  EXPECT_EQ(to_text(found), "Located at 0 of 3 scans.\nAt the end: The robot is nowhere.");
+  found.located = 1;
+  found.first = 2;
+  found.deviation = 0.125;
+  EXPECT_EQ(to_json(found)["deviation_m"], 0.125);
+  EXPECT_EQ(to_json(found)["first_located"], 2);
+  EXPECT_THAT(to_text(found), testing::HasSubstr("first at scan 2, counted from 0;"));
+}
+
 TEST(LocateStudy, RobotsReachFarGoalsByTheMapAndNotByTheirWheels) {
   LocateOptions options;
   options.seeds = 1;

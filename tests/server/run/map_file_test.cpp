@@ -78,6 +78,23 @@ TEST_F(MapFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(walls, 100U);
 }
 
+TEST_F(MapFile, ComesBackFromANameThatYamlWouldReadOtherwise) {
+  OccupancyMap map(0.05);
+  map.mark_wall({0.5, 0.5});
+  for (const char* name :
+       {"a #1.yaml", "c: d.yaml", "'e\".yaml", "- f.yaml", "[g].yaml", "plain"}) {
+    write_map(map, folder_ / name);
+    EXPECT_EQ(read_map(folder_ / name).tiles().size(), 1U) << name;
+  }
+}
+
+TEST_F(MapFile, IsNotWrittenOverItsOwnPicture) {
+  OccupancyMap map(0.05);
+  map.mark_wall({0.5, 0.5});
+  EXPECT_THROW(write_map(map, folder_ / "x.pgm"), std::runtime_error);
+  EXPECT_FALSE(fs::exists(folder_ / "x.pgm"));
+}
+
 TEST_F(MapFile, OnlyTheFacesOfThickWallsAreSeen) {
   OccupancyMap map(0.05);
   for (int j = 0; j < 10; ++j) {
@@ -141,6 +158,9 @@ TEST_F(MapFile, BadFilesAreRefusedWithASentence) {
   EXPECT_THAT(complaint(good, "P2\n1 1\n255\n256\n"), testing::HasSubstr("up to 255"));
   EXPECT_THAT(complaint(good, "P5\n99999 99999\n255\n"), testing::HasSubstr("64 million pixels"));
   EXPECT_THAT(complaint(good, "P2\n1 1\n255\n254\n"), testing::HasSubstr("shows no wall"));
+  EXPECT_THAT(complaint("image: .\nresolution: 1\norigin: [0, 0, 0]\n", picture),
+              testing::AllOf(testing::StartsWith("bad.yaml: image: "),
+                             testing::EndsWith(": is a folder, not a file")));
   EXPECT_THROW(read_map(folder_ / "none.yaml"), std::runtime_error);
 }
 

@@ -9,9 +9,12 @@
 #include <vector>
 
 #include "tests/server/map_room.hpp"
+#include "tests/temporary_folder.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "server/run/json_reader.hpp"
+#include "server/run/map_file.hpp"
 #include "server/run/run_spec.hpp"
 #include "server/run/runner.hpp"
 
@@ -59,6 +62,21 @@ TEST(MapRobot, ReachesItsGoalByTheMapWherePoorWheelsMissIt) {
   EXPECT_EQ(result.outcome, algo::Outcome::Reached) << result.reason;
   EXPECT_LT(true_distance(spec, *robot), 0.3);
   EXPECT_LT(worst, 0.12);
+}
+
+TEST(MapRobot, MayBeLostOnTheMapThatItsScenarioNames) {
+  const tests::TemporaryFolder folder;
+  algo::OccupancyMap cells(0.05);
+  cells.mark_wall({1, 1});
+  write_map(cells, folder.path() / "own.yaml");
+  sim::Scenario scenario = poor_wheels_in_a_room();
+  RunOverrides overrides;
+  overrides.lost = true;
+  EXPECT_THROW(make_spec(scenario, overrides), DocumentError);
+  scenario.map = (folder.path() / "own.yaml").string();
+  const RunSpec spec = make_spec(scenario, overrides);
+  EXPECT_TRUE(spec.scenario.lost);
+  EXPECT_TRUE(spec.map);
 }
 
 TEST(MapRobot, ALostRobotIsHeldUntilItKnowsItsPlaceAndThenDrives) {

@@ -1,0 +1,116 @@
+// tests/server/cli/command_files_test.cpp: what the commands refuse before they begin.
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/temporary_folder.hpp"
+#include <CLI/CLI.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/cli/cli.hpp"
+#include "server/run/text_file.hpp"
+
+namespace server {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class CommandFilesTest : public testing::Test {
+ protected:
+  /// The sentence that refuses these arguments, the first of which is the command; else empty.
+  static std::string refusal(void (*add)(Command, int&), std::vector<std::string> arguments) {
+    CLI::App app;
+    int status = -1;
+    add(Command(app), status);
+    std::ranges::reverse(arguments);  // CLI11 takes them from the end
+    testing::internal::CaptureStdout();
+    std::string sentence;
+    try {
+      app.parse(arguments);
+    } catch (const std::exception& e) {
+      sentence = e.what();
+    }
+    testing::internal::GetCapturedStdout();
+    return sentence;
+  }
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+
+ private:
+  tests::TemporaryFolder folder_{};
+};
+
+TEST_F(CommandFilesTest, AnOutputThatCannotBeWrittenIsRefusedAtOnce) {
+  const std::string nowhere = path("none/out.csv");
+  // No input exists: the sentence about the output comes before any about the input.
+  EXPECT_THAT(refusal(add_crowd_command, {"crowd", "x", "--tracks", nowhere}), HasSubstr(nowhere));
+  EXPECT_THAT(refusal(add_buildings_command, {"buildings", "--rows", nowhere}), HasSubstr(nowhere));
+  EXPECT_THAT(refusal(add_barn_command, {"barn", "x", "--rows", nowhere}), HasSubstr(nowhere));
+  EXPECT_THAT(refusal(add_locate_command, {"locate", "x", "--poses", nowhere}), HasSubstr(nowhere));
+  for (const char* option : {"--out", "--poses", "--map"}) {
+    EXPECT_THAT(refusal(add_map_command, {"map", "x", option, nowhere}), HasSubstr(nowhere));
+  }
+  EXPECT_THAT(refusal(add_export_command, {"export", "1", "-o", nowhere}), HasSubstr(nowhere));
+}
+
+TEST_F(CommandFilesTest, AnExportThatFailsKeepsTheOldFile) {
+  write_text(path("old.csv"), "kept");
+  EXPECT_NE(
+      refusal(add_export_command, {"export", "1", "--db", path("no.db"), "-o", path("old.csv")}),
+      "");
+  EXPECT_EQ(read_text(path("old.csv")), "kept");
+}
+
+TEST_F(CommandFilesTest, AnOutputThatWouldOverwriteAnInputIsRefused) {
+  write_text(path("in.log"), "kept");
+  const std::string in = path("in.log");
+  const std::string out = path("out.csv");
+  const auto shared = HasSubstr("are one file");
+  EXPECT_THAT(refusal(add_map_command, {"map", in, "--poses", in}), shared);
+  EXPECT_THAT(refusal(add_map_command, {"map", in, "--map", out, "--out", out}), shared);
+  EXPECT_THAT(
+      refusal(add_map_command, {"map", in, "--map", path("a.yaml"), "--out", path("a.pgm")}),
+      shared);
+  EXPECT_THAT(refusal(add_map_command, {"map", in, "--map", path("a.pgm")}), HasSubstr("picture"));
+  EXPECT_THAT(refusal(add_crowd_command, {"crowd", in, "--tracks", in}), shared);
+  EXPECT_THAT(refusal(add_locate_command, {"locate", in, "--poses", in}), shared);
+  write_text(path("in.json"), "kept");
+  EXPECT_THAT(refusal(add_barn_command, {"barn", path("in.json"), "--rows", path("in.json")}),
+              shared);
+  EXPECT_EQ(read_text(in), "kept");
+  EXPECT_EQ(read_text(path("in.json")), "kept");
+}
+
+TEST_F(CommandFilesTest, AnOptionWithoutEffectIsRefused) {
+  for (const char* option : {"--poses", "--map", "--out", "--markdown"}) {
+    EXPECT_THAT(
+        refusal(add_map_command, {"map", "--simulate", path("a.log"), option, path("b.yaml")}),
+        AllOf(HasSubstr("--simulate"), HasSubstr(option)));
+  }
+  EXPECT_THAT(refusal(add_map_command, {"map", "--simulate", path("a.log"), "--json"}),
+              HasSubstr("--json"));
+  EXPECT_FALSE(std::filesystem::exists(path("a.log")));
+  EXPECT_THAT(refusal(add_locate_command, {"locate", "x", "--markdown", path("x.md")}),
+              AllOf(HasSubstr("--markdown"), HasSubstr("--study")));
+  EXPECT_THAT(refusal(add_locate_command, {"locate", "x", "--study"}), HasSubstr("LOG"));
+}
+
+TEST_F(CommandFilesTest, ACommandThatSelectsNothingIsRefused) {
+  const auto buildings = [](std::vector<std::string> options) {
+    options.insert(options.begin(), "buildings");
+    return refusal(add_buildings_command, options);
+  };
+  EXPECT_EQ(buildings({"--seeds", "1-1", "--kinds", "maze"}), "These options select no buildings.");
+  EXPECT_EQ(buildings({"--tour", "3", "--seeds", "6-6", "--kinds", "flat"}),
+            "These options select no tours.");
+  EXPECT_THAT(buildings({"--seeds", "1-1", "--shard", "1/2"}),
+              HasSubstr("is empty: the number of buildings is 1"));
+  EXPECT_THAT(buildings({"--seeds", "1-1", "--kinds", "maze", "--scenario", path("s.json")}),
+              HasSubstr("no building"));
+  EXPECT_FALSE(std::filesystem::exists(path("s.json")));
+}
+
+}  // namespace
+}  // namespace server
