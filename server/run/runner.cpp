@@ -293,6 +293,15 @@ void Run::set_outcome(Outcome outcome, const char* reason) {
   if (links_.on_outcome) links_.on_outcome(outcome, reason, metrics_.metrics());
 }
 
+/// `what` has happened; the robot's own words say why it came no farther.
+void Run::give_up(Outcome outcome, const char* what, const algo::Telemetry& t) {
+  if (result_.outcome == outcome) return;
+  std::string reason = what;
+  if (!reason.empty() && !t.words.why.empty()) reason += ' ';
+  reason += t.words.why;
+  set_outcome(outcome, reason.c_str());
+}
+
 /// A robot that lies on its side or fell off an edge needs a reset, whatever comes after.
 bool Run::wrecked() const {
   return result_.outcome == Outcome::Overturned || result_.outcome == Outcome::Fallen;
@@ -316,10 +325,9 @@ void Run::judge(const algo::Telemetry& t) {
     set_outcome(Outcome::Reached);
   } else if (t.mission == algo::Mission::Stuck) {
     const bool hand = t.arm.state == algo::ArmState::GivenUp;
-    set_outcome(Outcome::Stuck,
-                hand ? t.words.why.c_str() : "The robot made no way towards its goal.");
+    give_up(Outcome::Stuck, hand ? "" : "The robot made no way towards its goal.", t);
   } else if (policy_.time_limit > 0 && t.observation.stamp >= policy_.time_limit - kRounding) {
-    set_outcome(Outcome::OutOfTime, "The time limit was over before the goal was reached.");
+    give_up(Outcome::OutOfTime, "The time limit was over before the goal was reached.", t);
   } else if (t.mission == algo::Mission::Driving) {
     set_outcome(Outcome::Running);
   }

@@ -155,6 +155,7 @@ class Run {
   void show();
   void news() const;
   bool over() const;
+  void give_up(algo::Outcome outcome, const char* what, const algo::Telemetry& t);
   bool wrecked() const;
 
   algo::Robot& robot_;

@@ -79,6 +79,17 @@ TEST(MapRobot, MayBeLostOnTheMapThatItsScenarioNames) {
   EXPECT_TRUE(spec.map);
 }
 
+TEST(MapRobot, ARunThatEndsWithoutAPlaceSaysSo) {
+  sim::Scenario scenario = poor_wheels_in_a_room();
+  scenario.start.x += 300;  // where the map shows nothing
+  scenario.time_limit = 5;
+  const RunSpec spec = spec_of(scenario, true, true);
+  const auto robot = make_robot(spec);
+  const RunResult result = drive_by(spec, *robot, [](const algo::Telemetry&) {});
+  EXPECT_EQ(result.outcome, algo::Outcome::OutOfTime);
+  EXPECT_THAT(result.reason, testing::HasSubstr("fits nowhere on the map"));
+}
+
 TEST(MapRobot, ALostRobotIsHeldUntilItKnowsItsPlaceAndThenDrives) {
   const sim::Scenario scenario = poor_wheels_in_a_room();
   const RunSpec spec = spec_of(scenario, true, true);
