@@ -2,6 +2,7 @@
 #include "server/run/scenario_library.hpp"
 
 #include <mutex>
+#include <optional>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "server/run/embedded_documents.hpp"
 #include "server/run/io_thread.hpp"
 #include "server/run/json_limits.hpp"
+#include "server/run/map_file.hpp"
 #include "server/run/scenario_json.hpp"
 #include "server/run/text_file.hpp"
 
@@ -112,7 +114,7 @@ sim::Scenario ScenarioLibrary::placed(sim::Scenario scenario) const {
   return with_map_in(own_, std::move(scenario));
 }
 
-void ScenarioLibrary::save(const sim::Scenario& scenario) const {
+sim::Scenario ScenarioLibrary::save(sim::Scenario scenario) const {
   if (!valid_name(scenario.name)) {
     throw LibraryError(
         Kind::BadName,
@@ -125,6 +127,11 @@ void ScenarioLibrary::save(const sim::Scenario& scenario) const {
                     scenario.name));
   }
   net::not_on_io_thread("Saving a scenario");
+  std::optional<algo::OccupancyMap> map;
+  if (fs::path(scenario.map).has_parent_path()) {
+    map = read_map(scenario.map);
+    scenario.map = own_map(scenario.name).filename().string();
+  }
   const std::string text = dump_json(to_json(scenario)) + '\n';
   parse(text, scenario.name, robots_);  // refuse a scenario that could not be loaded again
   const std::lock_guard lock(writing);
@@ -132,7 +139,9 @@ void ScenarioLibrary::save(const sim::Scenario& scenario) const {
   fs::create_directories(own_, error);
   const fs::path target = own_ / (scenario.name + ".json");
   try {
+    if (map) write_map(*map, own_map(scenario.name));
     replace_text(target, text);
+    return scenario;
   } catch (const std::exception&) {
     throw LibraryError(Kind::Unreadable,
                        fmt::format("Cannot write {}.", target.filename().string()));
@@ -149,6 +158,13 @@ void ScenarioLibrary::remove(const std::string& name) const {
   if (!valid_name(name) || !fs::remove(own_ / (name + ".json"), error)) {
     throw LibraryError(Kind::NotFound, fmt::format("You have no scenario '{}' of your own.", name));
   }
+  fs::remove(own_map(name), error);
+  fs::remove(picture_beside(own_map(name)), error);
+}
+
+/// The copy of a saved scenario's map. No scenario's name has a dot.
+fs::path ScenarioLibrary::own_map(const std::string& name) const {
+  return own_ / (name + ".map.yaml");
 }
 
 sim::Scenario ScenarioLibrary::from_file(const fs::path& path, const RobotLibrary& robots) {

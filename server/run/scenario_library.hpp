@@ -40,8 +40,9 @@ class ScenarioLibrary {
   sim::Scenario load(const std::string& name) const;
   /// `scenario` from the network, with its map in the user's folder if it names one.
   sim::Scenario placed(sim::Scenario scenario) const;
-  /// Writes to the user's folder. Throws LibraryError on a built-in name or an unwritable folder.
-  void save(const sim::Scenario& scenario) const;
+  /// Writes to the user's folder, with a copy of the map beside it if that lies elsewhere. Returns
+  /// the scenario as written. Throws LibraryError on a built-in name or an unwritable folder.
+  sim::Scenario save(sim::Scenario scenario) const;
   void remove(const std::string& name) const;
 
   /// Reads a scenario file, or a log if `path` ends in .log. Command line only: a name from the
@@ -50,6 +51,8 @@ class ScenarioLibrary {
                                  const RobotLibrary& robots = RobotLibrary());
 
  private:
+  std::filesystem::path own_map(const std::string& name) const;
+
   std::filesystem::path own_;
   std::filesystem::path logs_;
   RobotLibrary robots_;

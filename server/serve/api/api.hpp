@@ -74,8 +74,8 @@ LoadRequest load_request(const nlohmann::json& body);
 /// LibraryError. Not on the io thread.
 RunSpec spec_to_load(const ScenarioLibrary& library, LoadRequest asked, const RunSpec& now);
 /// Saves a scenario of the user after building its world: a scenario that cannot run is not kept.
-/// Throws LibraryError, or the error from building the world.
-void keep_scenario(const ApiContext& context, const sim::Scenario& scenario);
+/// Returns it as saved. Throws LibraryError, or the error from building the world.
+sim::Scenario keep_scenario(const ApiContext& context, const sim::Scenario& scenario);
 
 /// Carries out a `/load`-like document: {"scenario", "controller"?, ...}. Throws DocumentError on
 /// an invalid document. `done` gets a later error; the current run then goes on. False if too many

@@ -34,10 +34,10 @@ json robots_json(const RobotLibrary& robots) {
 
 }  // namespace
 
-void keep_scenario(const ApiContext& context, const sim::Scenario& scenario) {
+sim::Scenario keep_scenario(const ApiContext& context, const sim::Scenario& scenario) {
   make_robot(
       make_spec(context.library.placed(scenario), {.controllers = context.first.controllers}));
-  context.library.save(scenario);
+  return context.library.save(scenario);
 }
 
 void add_scenario_routes(Routes& routes) {
@@ -60,8 +60,7 @@ void add_scenario_routes(Routes& routes) {
         if (body.is_object() && !body.contains("name")) body["name"] = name;
         const sim::Scenario scenario = scenario_from_json(body, context.library.robots());
         if (scenario.name != name) throw DocumentError("name", "differs from the name in the path");
-        keep_scenario(context, scenario);
-        return json_response(200, server::to_json(scenario));
+        return json_response(200, server::to_json(keep_scenario(context, scenario)));
       });
   routes.make(
       "DELETE", "/scenarios/{name}", [](ApiContext& context, const net::Request& request, Worker&) {

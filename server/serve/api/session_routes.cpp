@@ -214,12 +214,12 @@ void save_scenario(ApiContext& context,
   scenario.name = name;
   scenario.title = in.text_or("title", name);
   answer_from_worker(context, respond, [&context, scenario, id = open.id()](Worker&) {
-    keep_scenario(context, scenario);
+    const sim::Scenario kept = keep_scenario(context, scenario);
     context.post_to_io([&context, scenario, id] {
       if (OpenSession* const still = context.sessions.find(id)) still->session().saved(scenario);
     });
-    net::Response response = json_response(201, to_json(scenario));
-    response.headers.push_back({"Location", "/api/v1/scenarios/" + scenario.name});
+    net::Response response = json_response(201, to_json(kept));
+    response.headers.push_back({"Location", "/api/v1/scenarios/" + kept.name});
     return response;
   });
 }
