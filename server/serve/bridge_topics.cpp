@@ -5,6 +5,8 @@
 #include <utility>
 #include <variant>
 
+#include <fmt/format.h>
+
 #include "server/run/json_reader.hpp"
 #include "server/run/request_json.hpp"
 #include "server/serve/bridge.hpp"
@@ -23,6 +25,16 @@ double yaw_of(const JsonReader& q) {
   return std::atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z));
 }
 
+/// Refuses a stamped message in another frame than that of the world. Without a header or a name it
+/// is taken as of that one.
+void check_frame(const JsonReader& message) {
+  if (!message.has("header")) return;
+  const JsonReader header = message.object("header");
+  const std::string frame = header.text_or("frame_id", "");
+  if (frame.empty() || frame == "map" || frame == "/map") return;
+  header.fail("frame_id", fmt::format("must be 'map', not '{}'", frame));
+}
+
 /// Applies the same limits as REST.
 algo::Request goal_at(const JsonReader& position, std::optional<double> heading) {
   json goal = {{"type", "set_goal"}, {"x", position.number("x")}, {"y", position.number("y")}};
@@ -32,7 +44,9 @@ algo::Request goal_at(const JsonReader& position, std::optional<double> heading)
 
 /// geometry_msgs/PoseStamped.
 algo::Request goal_from_pose(const json& message) {
-  const JsonReader pose = JsonReader(message, "").object("pose");
+  const JsonReader in(message, "");
+  check_frame(in);
+  const JsonReader pose = in.object("pose");
   std::optional<double> heading;
   if (pose.has("orientation")) heading = yaw_of(pose.object("orientation"));
   return goal_at(pose.object("position"), heading);
@@ -40,7 +54,9 @@ algo::Request goal_from_pose(const json& message) {
 
 /// geometry_msgs/PoseWithCovarianceStamped. How sure the sender is does not count.
 algo::Request initial_pose_from(const json& message) {
-  const JsonReader pose = JsonReader(message, "").object("pose").object("pose");
+  const JsonReader in(message, "");
+  check_frame(in);
+  const JsonReader pose = in.object("pose").object("pose");
   const JsonReader position = pose.object("position");
   return request_from_json({{"type", "set_initial_pose"},
                             {"x", position.number("x")},
@@ -50,7 +66,9 @@ algo::Request initial_pose_from(const json& message) {
 
 /// geometry_msgs/PointStamped.
 algo::Request goal_from_point(const json& message) {
-  return goal_at(JsonReader(message, "").object("point"), std::nullopt);
+  const JsonReader in(message, "");
+  check_frame(in);
+  return goal_at(in.object("point"), std::nullopt);
 }
 
 /// geometry_msgs/Twist in m/s and rad/s, as a share of the robot's limits.

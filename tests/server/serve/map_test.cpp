@@ -50,7 +50,7 @@ TEST_F(MapTest, APoseIsGivenAndGoalsAreRefusedUntilItIsFound) {
 TEST_F(MapTest, FoxglovesInitialPoseIsTaken) {
   ASSERT_TRUE(eventually([&] { return located(); }));
   EXPECT_EQ(get("/session")["fix"]["epoch"], 1);
-  const Viewer viewer(port_);
+  Viewer viewer(port_);
   const json channel = {{"id", 9},
                         {"topic", "/initialpose"},
                         {"encoding", "json"},
@@ -60,6 +60,10 @@ TEST_F(MapTest, FoxglovesInitialPoseIsTaken) {
   const json orientation = {{"x", 0}, {"y", 0}, {"z", 0.1}, {"w", 0.995}};
   const json pose = {{"position", position}, {"orientation", orientation}};
   const json message = {{"pose", {{"pose", pose}, {"covariance", json::array()}}}};
+  json in_odometry = message;
+  in_odometry["header"] = {{"frame_id", "odom"}};
+  viewer.client.send_binary(foxglove::client_message(9, in_odometry.dump()));
+  EXPECT_THAT(viewer.complaint(), testing::HasSubstr("must be 'map', not 'odom'"));
   viewer.client.send_binary(foxglove::client_message(9, message.dump()));
   EXPECT_TRUE(eventually([&] { return located() && get("/session")["fix"]["epoch"] == 2; }));
 }
