@@ -49,15 +49,16 @@ class PgmReader {
   }
   unsigned byte(std::size_t k) const { return static_cast<unsigned char>(bytes_[k]); }
 
-  /// One white space lies before the `wanted` bytes at the end, or CR LF if the bytes fit only so.
+  /// One white space lies before the `wanted` bytes, or CR LF if the bytes fit only so. White space
+  /// may follow them.
   void skip_separator(std::size_t wanted) {
     const std::size_t left = bytes_.size() - at_;
     if (left <= wanted) fail("ends too early.");
     std::size_t separator = 1;
     if (left == wanted + 2 && bytes_.substr(at_).starts_with("\r\n")) separator = 2;
-    if (left > wanted + separator) {
-      fail(fmt::format("holds {} bytes more than its width and height say.",
-                       left - wanted - separator));
+    const std::string_view rest = bytes_.substr(at_ + separator + wanted);
+    if (rest.find_first_not_of(" \t\r\n") != std::string_view::npos) {
+      fail(fmt::format("holds {} bytes more than its width and height say.", rest.size()));
     }
     at_ += separator;
   }

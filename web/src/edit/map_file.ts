@@ -56,12 +56,14 @@ export function read_pgm(bytes: Uint8Array, file: string): Picture {
   return { width, height, most, grey };
 }
 
-/** The bytes before the `wanted` ones at the end of `rest`: one white space, or CR LF if the bytes fit only so. */
+/** The bytes before the `wanted` ones of `rest`: one white space, or CR LF if the bytes fit only so. White space may follow them. */
 function separator_of(rest: Uint8Array, wanted: number, file: string): number {
   if (rest.length <= wanted) throw new Error(`${file} ends too early.`);
   const separator = rest.length === wanted + 2 && rest[0] === 13 && rest[1] === 10 ? 2 : 1;
-  const more = rest.length - wanted - separator;
-  if (more > 0) throw new Error(`${file} holds ${more} bytes more than its width and height say.`);
+  const more = rest.subarray(separator + wanted);
+  if (more.some((byte) => ![9, 10, 13, 32].includes(byte))) {
+    throw new Error(`${file} holds ${more.length} bytes more than its width and height say.`);
+  }
   return separator;
 }
 
