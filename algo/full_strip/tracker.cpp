@@ -44,6 +44,7 @@ constexpr double kMemoryEvery = 0.09;  // [s] between two kept scans,
 constexpr double kMemoryLeast = 0.2;   // [s] least age of one to compare with,
 constexpr double kMemoryMore = 0.5;    // [s] and how much older than the track it may be
 constexpr double kBeyond = 0.2;        // [m] an earlier beam went on behind the present obstacle
+constexpr double kFreeAside = 0.04;    // [m] and on both sides of it: poses and hits are not exact
 constexpr double kSame = 0.1;          // [m] within which an earlier hit is at the same place
 constexpr std::size_t kSolid = 8;      // beams of a cluster that may count as moving
 constexpr double kStout = 0.12;     // [m] and its radius: thinner things come and go in the filter
@@ -349,25 +350,32 @@ void Tracker::memorise(const LaserScan& scan, const Pose2& sensor_W, double stam
   }
 }
 
-/// True if an earlier scan looked well beyond the point.
-bool Tracker::free_in(const Memory& memory, const Vec2& point_W) const {
+/// True if a scan looked well beyond the point, and beyond `aside` [m] on both sides of it.
+bool Tracker::free_in(const Memory& memory, const Vec2& point_W, double aside) const {
   const double beam = beam_at(memory.sensor_W, point_W, memory.angle_min, memory.angle_increment);
-  if (!(beam >= 1 && beam < static_cast<double>(memory.ranges.size()) - 2)) return false;
-  const auto b = static_cast<std::size_t>(std::lround(beam));
+  const auto last = static_cast<double>(memory.ranges.size()) - 1;
+  if (!(beam >= 1 && beam < last - 1)) return false;
   const double far = (point_W - memory.sensor_W.position()).norm();
-  for (std::size_t i = b - 1; i <= b + 1; ++i) {
+  const double beams = 1 + aside / (std::max(far, 0.01 + aside) * std::abs(memory.angle_increment));
+  const auto from = static_cast<std::size_t>(std::lround(std::max(0.0, beam - beams)));
+  const auto to = static_cast<std::size_t>(std::lround(std::min(last, beam + beams)));
+  for (std::size_t i = from; i <= to; ++i) {
     if (static_cast<double>(memory.ranges[i]) < far + kBeyond) return false;
   }
   return true;
 }
 
-/// True if an earlier scan hit something at the point.
-bool Tracker::hit_in(const Memory& memory, const Vec2& point_W) const {
+/// What an earlier scan hit at the point, if anything: the place of that hit.
+std::optional<Vec2> Tracker::hit_in(const Memory& memory, const Vec2& point_W) const {
   const double beam = beam_at(memory.sensor_W, point_W, memory.angle_min, memory.angle_increment);
-  if (!(beam >= 1 && beam < static_cast<double>(memory.ranges.size()) - 2)) return false;
-  const auto range =
-      static_cast<double>(memory.ranges[static_cast<std::size_t>(std::lround(beam))]);
-  return std::abs(range - (point_W - memory.sensor_W.position()).norm()) < kSame;
+  if (!(beam >= 1 && beam < static_cast<double>(memory.ranges.size()) - 2)) return std::nullopt;
+  const double nearest = std::round(beam);
+  const auto range = static_cast<double>(memory.ranges[static_cast<std::size_t>(nearest)]);
+  const Vec2 eye_W = memory.sensor_W.position();
+  if (std::abs(range - (point_W - eye_W).norm()) >= kSame) return std::nullopt;
+  const double bearing =
+      memory.sensor_W.heading + memory.angle_min + nearest * memory.angle_increment;
+  return eye_W + range * direction(bearing);
 }
 
 /// True if there is an obstacle where an earlier scan saw none, or none where it saw one. In a
@@ -383,13 +391,15 @@ bool Tracker::changed(const Filter& f, const Cluster& c, const std::vector<Vec2>
     int fresh = 0;
     for (std::size_t i = c.first; i <= c.last; i += stride) {
       ++count;
-      fresh += free_in(then, points_W[i]) ? 1 : 0;
+      fresh += free_in(then, points_W[i], 0) ? 1 : 0;
     }
     if (3 * fresh >= count) return true;
     const Vec2 was = f.position_W - f.velocity_W * since;
     const Vec2 to_sensor = (then.sensor_W.position() - was).normalized();
     const Vec2 front = was + to_sensor * f.radius;
-    if (hit_in(then, front) && free_in(now, front)) return true;
+    // Where that scan hit it, not where the circle says: beside a thin thing the view is free.
+    const std::optional<Vec2> hit_W = hit_in(then, front);
+    if (hit_W && free_in(now, *hit_W, kFreeAside)) return true;
   }
   return false;
 }

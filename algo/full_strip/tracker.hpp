@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "algo/laser_scan.hpp"
@@ -107,8 +108,8 @@ class Tracker {
   void judge(Filter& f, const Cluster& c, const std::vector<Vec2>& points_W, double stamp);
   bool changed(const Filter& f, const Cluster& c, const std::vector<Vec2>& points_W) const;
   void memorise(const LaserScan& scan, const Pose2& sensor_W, double stamp);
-  bool hit_in(const Memory& memory, const Vec2& point_W) const;
-  bool free_in(const Memory& memory, const Vec2& point_W) const;
+  std::optional<Vec2> hit_in(const Memory& memory, const Vec2& point_W) const;
+  bool free_in(const Memory& memory, const Vec2& point_W, double aside) const;
   bool looked_through(const Filter& f, const LaserScan& scan, const Pose2& sensor_W) const;
   void publish(double stamp);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <random>
 #include <vector>
 
 #include "tests/algo/worlds.hpp"
@@ -17,22 +18,24 @@ using algo::Vec2;
 
 constexpr double kPeriod = 0.05;  // [s]
 
-/// A scanner at the origin of a changing `world`.
+/// A scanner, at first at the origin, in a changing `world`.
 struct Watch {
   worlds::World world{};
+  algo::Pose2 sensor_W{};
   algo::Tracker tracker{};
   algo::LaserScan scan{};
   std::vector<Vec2> points_W{};
   double stamp = 0;
 
   void tick() {
-    worlds::scan_world({}, world, 8, scan);
+    worlds::scan_world(sensor_W, world, 8, scan);
     points_W.resize(scan.size());
     for (std::size_t i = 0; i < scan.size(); ++i) {
-      points_W[i] = scan.ranges[i] * algo::direction(scan.angle(i));
+      points_W[i] =
+          sensor_W.position() + scan.ranges[i] * algo::direction(sensor_W.heading + scan.angle(i));
     }
     scan.stamp = stamp;
-    tracker.update(scan, {}, points_W);
+    tracker.update(scan, sensor_W, points_W);
     stamp += kPeriod;
   }
   void run(double seconds, const std::function<void(double)>& move) {
@@ -136,6 +139,27 @@ TEST(Tracker, PostsAndWallsBelongToTheMapAtOnce) {
   watch.run(1.0, [](double) {});
   EXPECT_TRUE(watch.tracker.moving().empty());
   EXPECT_EQ(watch.beams_taken(), 0U);
+}
+
+/// Two or three posts that touch are one cluster, whose centre slides as the robot passes them.
+TEST(Tracker, APassedThicketDoesNotMove) {
+  std::mt19937 random(1);
+  const auto uniform = [&](double from, double to) {
+    return from + (to - from) * static_cast<double>(random()) / 4294967296.0;
+  };
+  for (int thicket = 0; thicket < 20; ++thicket) {
+    Watch watch;
+    for (int k = 0; k < 50; ++k) {
+      const double side = uniform(0.5, 2.0);
+      watch.world.circles.push_back({{uniform(0, 6), k % 2 == 0 ? side : -side}, 0.075});
+    }
+    int moving = 0;
+    watch.run(4.0, [&](double t) {
+      watch.sensor_W = {1.2 * t, 0.1 * std::sin(3 * t), 0.3 * std::cos(3 * t)};
+      moving += std::ranges::count(watch.tracker.moving(), true, &Track::moves) > 0 ? 1 : 0;
+    });
+    EXPECT_EQ(moving, 0) << "ticks, in thicket " << thicket;
+  }
 }
 
 /// The corner of a box or a jamb, seen from its side, fits a circle within the noise of a scan.
