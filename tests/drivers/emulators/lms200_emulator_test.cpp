@@ -4,6 +4,7 @@
 
 #include "tests/drivers/emulators/talk.hpp"
 #include "tests/drivers/hex.hpp"
+#include "tests/drivers/lms200_telegrams.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -397,7 +398,7 @@ TEST(Lms200Emulator, RangesCarryTheNumberOfTheirFirstValue) {
   EXPECT_EQ(values->first, 27);
   EXPECT_EQ(values->size(), 273U);
   EXPECT_EQ(values->word(0), 1026);
-  EXPECT_EQ(host.ask(range_command({1, 362}).view()), hex(kAcked + kRefused));
+  EXPECT_EQ(host.ask(framed(0, hex("37 01 00 6A 01"))), hex(kAcked + kRefused));
 }
 
 TEST(Lms200Emulator, PartialScansComeInOrder) {
