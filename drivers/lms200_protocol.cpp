@@ -45,22 +45,6 @@ bool is(const Telegram& telegram, Answer answer) {
   return telegram.code() == static_cast<std::uint8_t>(answer) && telegram.payload.size() >= 2;
 }
 
-/// [bit/s] from the rate word of the status.
-unsigned baud_of_word(std::uint16_t word) {
-  switch (word) {
-    case 0x8001:
-      return 500000;
-    case 0x8019:
-      return 38400;
-    case 0x8033:
-      return 19200;
-    case 0x8067:
-      return 9600;
-    default:
-      return 0;
-  }
-}
-
 const char* severity_text(std::uint8_t severity) {
   constexpr std::array<const char*, 5> kWords{"nothing", "info", "warning", "error", "fatal error"};
   return severity < kWords.size() ? kWords[severity] : "unknown severity";
@@ -191,22 +175,11 @@ std::optional<DeviceStatus> device_status(const Telegram& telegram) {
   constexpr std::size_t kLength = 0x9A;
   if (!is(telegram, Answer::Status) || telegram.payload.size() != kLength) return std::nullopt;
   const ByteView p = telegram.payload;  // the manual counts bytes from the code, byte 0
-  DeviceStatus status{.software = text_of(p.subspan(1, 7)),
-                      .mode = p[8],
+  return DeviceStatus{.software = text_of(p.subspan(1, 7)),
                       .faulty = p[9] != 0,
-                      .variant_type = p[18],
-                      .motor_microseconds = word_at(p, 67),
                       .measuring_mode = p[102],
                       .variant = {word_at(p, 107), word_at(p, 109)},
-                      .baud = baud_of_word(word_at(p, 116)),
-                      .start_up_rate = p[119],
-                      .address = p[120],
-                      .in_millimetres = p[122] == 1,
-                      .laser_on = p[123] != 0};
-  for (std::size_t i = 0; i < status.pollution.size(); ++i) {
-    status.pollution[i] = word_at(p, 19 + 2 * i);
-  }
-  return status;
+                      .in_millimetres = p[122] == 1};
 }
 
 }  // namespace drivers::lms200

@@ -175,18 +175,10 @@ std::optional<ConfigurationAnswer> configuration_answer(const Telegram& telegram
 
 struct DeviceStatus {
   std::string_view software{};  // 7 characters; valid as long as the telegram
-  std::uint8_t mode = 0;
   bool faulty = false;
-  std::uint8_t variant_type = 0;
-  std::array<std::uint16_t, 8> pollution{};  // of each part of the window
-  std::uint16_t motor_microseconds = 0;      // for 1/90 of a turn; 148 nominal
   std::uint8_t measuring_mode = 0;
   Variant variant{};
-  unsigned baud = 0;  // [bit/s]; 0: unknown word
-  std::uint8_t start_up_rate = 0;
-  std::uint8_t address = 0;
   bool in_millimetres = false;
-  bool laser_on = false;
 };
 std::optional<DeviceStatus> device_status(const Telegram& telegram);
 

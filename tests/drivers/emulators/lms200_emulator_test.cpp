@@ -214,9 +214,10 @@ TEST(Lms200Emulator, ReportsItsStatus) {
   ASSERT_TRUE(status);
   EXPECT_EQ(status->software, "V02.30 ");
   EXPECT_EQ(status->variant, options.variant);
-  EXPECT_EQ(status->baud, 9600U);
-  EXPECT_EQ(status->address, 3);
-  EXPECT_EQ(status->motor_microseconds, 148);
+  const ByteView payload = telegram_of(got[0]).payload;
+  EXPECT_EQ(word_at(payload, 116), 0x8067);  // 9600 bit/s
+  EXPECT_EQ(payload[120], 3);                // its address
+  EXPECT_EQ(word_at(payload, 67), 148);      // [us] of its motor
   EXPECT_TRUE(status->in_millimetres);
 }
 
