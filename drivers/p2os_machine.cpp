@@ -241,7 +241,7 @@ void PioneerMachine::take_state(double now, ByteView body) {
   state_.bumper_front = packet_.front_bumpers != 0;
   state_.bumper_rear = packet_.rear_bumpers != 0;
   state_.stalled = packet_.stalled();
-  state_.faulty = packet_.tail && packet_.tail->faults != 0;
+  state_.faulty = packet_.faults.value_or(0) != 0;
   state_.volts = packet_.volts;
   for (std::size_t i = 0; i < packet_.sonar_count; ++i) {
     const SonarReading& reading = packet_.sonars[i];
@@ -343,7 +343,7 @@ algo::DeviceReport PioneerMachine::report(double now) const {
   out.well = state_.running && trouble_.empty() && !state_.stop_button && !state_.faulty;
   out.sentence = trouble_;
   if (state_.running && state_.faulty) {
-    out.sentence = fmt::format("The base reports fault flags 0x{:04x}.", packet_.tail->faults);
+    out.sentence = fmt::format("The base reports fault flags 0x{:04x}.", *packet_.faults);
   }
   if (state_.running && state_.stop_button) {
     out.sentence = "Its stop button is pressed: release it, then arm.";
