@@ -55,14 +55,9 @@ void PioneerMachine::opened(double now, unsigned baud) {
 }
 
 void PioneerMachine::closed(double /*now*/, const std::string& why) {
-  orders_.clear();
   reader_.clear();
   if (step_ != Step::Left) step_ = Step::NoLine;
-  state_.running = false;
-  state_.motors_on = false;
-  off_.cancel();
-  trouble_ = why;
-  deadline_ = std::numeric_limits<double>::infinity();
+  lose_line(why);
 }
 
 void PioneerMachine::rate_set(double /*now*/, unsigned /*baud*/) {

@@ -79,13 +79,8 @@ void RoboteqMachine::greet(double now) {
 }
 
 void RoboteqMachine::closed(double /*now*/, const std::string& why) {
-  orders_.clear();
   if (step_ != Step::Left) step_ = Step::NoLine;
-  state_.running = false;
-  state_.motors_on = false;
-  off_.cancel();
-  trouble_ = why;
-  deadline_ = std::numeric_limits<double>::infinity();
+  lose_line(why);
 }
 
 void RoboteqMachine::receive(double now, ByteView bytes) {
