@@ -81,12 +81,4 @@ std::int64_t count_difference(std::uint32_t now, std::uint32_t before, unsigned 
   return raw >= span / 2 ? raw - span : raw;
 }
 
-WheelSpeeds saturate(const WheelSpeeds& speeds, double max_speed) {
-  require_positive("max_speed", max_speed);
-  const double fastest = std::max(std::abs(speeds.left), std::abs(speeds.right));
-  if (!(fastest > max_speed)) return speeds;
-  const double factor = max_speed / fastest;
-  return {speeds.left * factor, speeds.right * factor};
-}
-
 }  // namespace algo

@@ -67,8 +67,4 @@ Pose2 integrate_counts(const DriveGeometry& geometry,
 /// Throws std::invalid_argument when bits is not 2..32.
 std::int64_t count_difference(std::uint32_t now, std::uint32_t before, unsigned bits = 32);
 
-/// Scales both wheels by one factor so that neither exceeds `max_speed` [rad/s]. This keeps the
-/// curvature of the path. Throws std::invalid_argument when max_speed is not above 0.
-WheelSpeeds saturate(const WheelSpeeds& speeds, double max_speed);
-
 }  // namespace algo

@@ -32,6 +32,22 @@ std::string_view name(Outcome outcome) {
   return kOutcomes[static_cast<std::size_t>(outcome)];
 }
 
+std::optional<ResampledPath::Bend> ResampledPath::add(const Vec2& position_W) {
+  if (!kept_W_) {
+    kept_W_ = position_W;
+    return std::nullopt;
+  }
+  const Vec2 segment = position_W - *kept_W_;
+  const double length = segment.norm();
+  if (length < kResample) return std::nullopt;
+  const double direction = std::atan2(segment.y(), segment.x());
+  std::optional<Bend> bend;
+  if (direction_) bend = Bend{wrap_angle(direction - *direction_), length};
+  direction_ = direction;
+  kept_W_ = position_W;
+  return bend;
+}
+
 void MetricsRecorder::reset(const RobotSpec& spec) {
   *this = {};
   radius_ = spec.radius;
@@ -61,16 +77,7 @@ void MetricsRecorder::add(const Telemetry& t, const Parameters& parameters) {
 void MetricsRecorder::follow_path(const Vec2& position_W) {
   if (last_W_) metrics_.path_length += (position_W - *last_W_).norm();
   last_W_ = position_W;
-  if (!kept_W_) {
-    kept_W_ = position_W;
-    return;
-  }
-  const Vec2 segment = position_W - *kept_W_;
-  if (segment.norm() < kResample) return;
-  const double heading = std::atan2(segment.y(), segment.x());
-  if (direction_) metrics_.turning += std::abs(wrap_angle(heading - *direction_));
-  direction_ = heading;
-  kept_W_ = position_W;
+  if (const auto bend = path_.add(position_W)) metrics_.turning += std::abs(bend->change);
 }
 
 void MetricsRecorder::count_via(const Telemetry& t, double influence) {

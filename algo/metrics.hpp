@@ -39,6 +39,23 @@ struct Metrics {
   bool collided = false;
 };
 
+/// A path resampled at 50 mm.
+class ResampledPath {
+ public:
+  struct Bend {
+    double change = 0;  // [rad] of direction, from the segment before
+    double length = 0;  // [m] of this segment
+  };
+
+  /// The bend at the newest segment, if `position_W` ends one that is not the first.
+  std::optional<Bend> add(const Vec2& position_W);
+  bool begun() const { return kept_W_.has_value(); }
+
+ private:
+  std::optional<Vec2> kept_W_{};
+  std::optional<double> direction_{};  // [rad] of the last kept segment
+};
+
 /// Measures a run tick by tick. Uses the true pose and clearance if the robot has them, else the
 /// odometry and the filtered scan.
 class MetricsRecorder {
@@ -55,9 +72,8 @@ class MetricsRecorder {
   double radius_ = 0;
   double period_ = 0;
   std::optional<double> first_stamp_{};
-  std::optional<Vec2> last_W_{};       // position one tick ago
-  std::optional<Vec2> kept_W_{};       // last position kept by the resampling
-  std::optional<double> direction_{};  // [rad] of the last kept segment
+  std::optional<Vec2> last_W_{};  // position one tick ago
+  ResampledPath path_{};
   std::optional<Vec2> counted_pass_W_{};
 };
 

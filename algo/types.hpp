@@ -26,6 +26,11 @@ inline double wrap_angle(double angle) {
   return wrapped <= -std::numbers::pi ? std::numbers::pi : wrapped;
 }
 
+/// `now` moved towards `wanted` by `most` at most.
+inline double towards(double now, double wanted, double most) {
+  return now + std::clamp(wanted - now, -most, most);
+}
+
 /// floor(x), for numbers that an int holds. Without SSE4.1, which not every processor has, the
 /// library's takes five times as long.
 inline int whole_below(double x) {

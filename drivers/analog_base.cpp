@@ -16,10 +16,6 @@ constexpr double kLeastInterval = 0.002;  // [s] between two readings of the car
 constexpr double kLongestStep = 0.1;      // [s] one ramp step after a pause
 constexpr double kFastestWheel = 10;      // [m/s] a faster change means the counter was reset
 
-double towards(double from, double to, double most) {
-  return from + std::clamp(to - from, -most, most);
-}
-
 }  // namespace
 
 AnalogBase::AnalogBase(std::string port, const AnalogSetup& setup, Opener open, double (*now)())
@@ -142,8 +138,8 @@ void AnalogBase::drive(const algo::Twist2& twist) {
     const algo::Twist2 wanted = limited(twist, setup_.limits);
     const double dt = std::clamp(now - told_at_, 0.0, kLongestStep);
     told_at_ = now;
-    told_.v = towards(told_.v, wanted.v, setup_.limits.acceleration * dt);
-    told_.omega = towards(told_.omega, wanted.omega, setup_.limits.turn_acceleration * dt);
+    told_.v = algo::towards(told_.v, wanted.v, setup_.limits.acceleration * dt);
+    told_.omega = algo::towards(told_.omega, wanted.omega, setup_.limits.turn_acceleration * dt);
     const algo::SideMotion sides = algo::sides_of(told_, setup_.half_track);
     const auto volts = [this](double speed, double measured) {
       // Exactly 0 V at rest: encoder noise must not make the wheels creep.

@@ -49,10 +49,6 @@ inline std::uint16_t word_at(ByteView bytes, std::size_t at) {
 inline std::int16_t signed_word_at(ByteView bytes, std::size_t at) {
   return static_cast<std::int16_t>(word_at(bytes, at));
 }
-inline std::int32_t signed_long_at(ByteView bytes, std::size_t at) {
-  const std::uint32_t high = word_at(bytes, at + 2);
-  return static_cast<std::int32_t>((high << 16U) | word_at(bytes, at));
-}
 
 /// `bytes` as the characters they are.
 inline std::string_view text_of(ByteView bytes) {

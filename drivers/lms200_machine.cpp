@@ -257,7 +257,6 @@ void LaserMachine::answered(double now, const Telegram& telegram) {
         variant_ = status->variant;
         measuring_mode_ = status->measuring_mode;
         in_millimetres_ = status->in_millimetres;
-        motor_microseconds_ = status->motor_microseconds;
         if (status->faulty) remark("The scanner reports a fault: read its error memory.");
       }
       health_ = Health(telegram.status());
@@ -380,10 +379,7 @@ void LaserMachine::take_values(double now, const Telegram& telegram, std::size_t
 void LaserMachine::deliver(double now, std::size_t bytes, Health health) {
   health_ = health;
   measure_period(now);
-  if (!health.usable()) {
-    ++unusable_;
-    return;
-  }
+  if (!health.usable()) return;
   ++scans_;
   // The last byte arrived now; the sweep ended when the first byte was sent.
   filling_.stamp = now - transfer_time(bytes, baud_);
@@ -461,11 +457,9 @@ LaserReport LaserMachine::report() const {
   out.variant = interlaced() ? setup_.variant : variant_.value_or(Variant{});
   out.measuring_mode = measuring_mode_;
   out.in_millimetres = in_millimetres_;
-  out.motor_microseconds = motor_microseconds_;
   out.health = health_;
   out.line = reader_.counters();
   out.scans = scans_;
-  out.unusable = unusable_;
   out.replaced = replaced_;
   out.set_ups = set_ups_;
   out.written = written_;
@@ -476,7 +470,6 @@ LaserReport LaserMachine::report() const {
   out.nominal_period = nominal_period();
   out.scan_period = period_;
   out.last_scan = last_scan_;
-  out.last_heard = last_heard_;
   return out;
 }
 

@@ -61,11 +61,9 @@ struct LaserReport {
   Variant variant{};
   std::uint8_t measuring_mode = 0;
   bool in_millimetres = true;
-  std::optional<std::uint16_t> motor_microseconds{};  // 148 nominal
   Health health{};
   LineCounters line{};
   std::uint64_t scans = 0;
-  std::uint64_t unusable = 0;  // intact scans that the device marked unreliable
   std::uint64_t replaced = 0;  // scans replaced by a newer one before they were read
   std::uint64_t set_ups = 0;   // times the device was found and set up
   std::uint64_t written = 0;   // times the configuration was written
@@ -76,7 +74,6 @@ struct LaserReport {
   double scan_period = 0;     // [s] measured, or the least at its rate
   double nominal_period = 0;  // [s] the least at its rate
   double last_scan = 0;       // [s] steady clock, arrival of the newest scan; 0: none yet
-  double last_heard = 0;      // [s] arrival of the last intact telegram
 };
 
 class LaserMachine final : public Machine {
@@ -200,7 +197,6 @@ class LaserMachine final : public Machine {
   Configuration written_block_{};
   std::uint8_t measuring_mode_ = 0;
   bool in_millimetres_ = true;
-  std::optional<std::uint16_t> motor_microseconds_{};
   Health health_{};
 
   ScanDecoder decoder_{Variant{}, WordFormat{}};
@@ -219,7 +215,6 @@ class LaserMachine final : public Machine {
   std::optional<Dazzled> dazzled_{};
   std::uint64_t bad_before_ = 0;
   std::uint64_t scans_ = 0;
-  std::uint64_t unusable_ = 0;
   std::uint64_t replaced_ = 0;
   std::uint64_t set_ups_ = 0;
   std::uint64_t written_ = 0;

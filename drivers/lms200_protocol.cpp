@@ -5,28 +5,18 @@ namespace drivers::lms200 {
 namespace {
 
 enum class Request : std::uint8_t {
-  Reset = 0x10,
   Mode = 0x20,
-  Values = 0x30,
   Status = 0x31,
-  Errors = 0x32,
-  Mean = 0x36,
-  Range = 0x37,
   Type = 0x3A,
   Variant = 0x3B,
-  MeanRange = 0x3F,
-  StartUpRate = 0x66,
   ReadConfiguration = 0x74,
   WriteConfiguration = 0x77,
-  ReadSecond = 0x7B,
-  WriteSecond = 0x7C,
 };
 
 constexpr std::size_t kPasswordBytes = 8;
-constexpr std::size_t kSecondBytes = 84;
 
 /// The payload of a frame.
-using Payload = FixedBytes<kSecondBytes + 2>;
+using Payload = FixedBytes<Configuration::kBytes + 1>;
 
 Command framed(const Payload& payload, std::uint8_t address) {
   Command command;
@@ -51,58 +41,13 @@ Payload begun(Mode mode) {
   return begun(Request::Mode, static_cast<std::uint8_t>(mode));
 }
 
-void append(Payload& payload, ValueRange range) {
-  payload.append_word(range.first);
-  payload.append_word(range.last);
-}
-
 bool is(const Telegram& telegram, Answer answer) {
   return telegram.code() == static_cast<std::uint8_t>(answer) && telegram.payload.size() >= 2;
-}
-
-/// [bit/s] from the rate word of the status.
-unsigned baud_of_word(std::uint16_t word) {
-  switch (word) {
-    case 0x8001:
-      return 500000;
-    case 0x8019:
-      return 38400;
-    case 0x8033:
-      return 19200;
-    case 0x8067:
-      return 9600;
-    default:
-      return 0;
-  }
 }
 
 const char* severity_text(std::uint8_t severity) {
   constexpr std::array<const char*, 5> kWords{"nothing", "info", "warning", "error", "fatal error"};
   return severity < kWords.size() ? kWords[severity] : "unknown severity";
-}
-
-const char* number_text(std::uint8_t number) {
-  switch (number) {
-    case 5:
-      return "the scanner is dazzled";
-    case 17:
-    case 18:
-    case 19:
-    case 20:
-      return "the window is dirty";
-    case 29:
-      return "the motor's speed is wrong";
-    case 45:
-      return "a measured value is missing";
-    case 46:
-      return "a scan is missing";
-    case 53:
-      return "the flash memory was written";
-    case 56:
-      return "the watchdog has struck";
-    default:
-      return "see the device's manual";
-  }
 }
 
 }  // namespace
@@ -126,23 +71,14 @@ unsigned baud_of(Rate rate) {
   }
 }
 
-Command reset_command(std::uint8_t address) {
-  return plain(Request::Reset, address);
-}
 Command status_command(std::uint8_t address) {
   return plain(Request::Status, address);
-}
-Command error_command(std::uint8_t address) {
-  return plain(Request::Errors, address);
 }
 Command type_command(std::uint8_t address) {
   return plain(Request::Type, address);
 }
 Command read_configuration_command(std::uint8_t address) {
   return plain(Request::ReadConfiguration, address);
-}
-Command read_second_configuration_command(std::uint8_t address) {
-  return plain(Request::ReadSecond, address);
 }
 
 Command rate_command(Rate rate, std::uint8_t address) {
@@ -151,58 +87,11 @@ Command rate_command(Rate rate, std::uint8_t address) {
 Command mode_command(Mode mode, std::uint8_t address) {
   return framed(begun(mode), address);
 }
-Command values_command(Wanted wanted, std::uint8_t address) {
-  return framed(begun(Request::Values, static_cast<std::uint8_t>(wanted)), address);
-}
-Command mean_command(std::uint8_t scans, std::uint8_t address) {
-  return framed(begun(Request::Mean, scans), address);
-}
-Command start_up_rate_command(StartUpRate rate, std::uint8_t address) {
-  return framed(begun(Request::StartUpRate, static_cast<std::uint8_t>(rate)), address);
-}
 
 Command installation_command(std::string_view password, std::uint8_t address) {
   if (password.size() != kPasswordBytes) return {};
   Payload payload = begun(Mode::Installation);
   payload.append(password);
-  return framed(payload, address);
-}
-
-Command continuous_means_command(std::uint8_t scans, std::uint8_t address) {
-  Payload payload = begun(Mode::ContinuousMeans);
-  payload.push_back(scans);
-  return framed(payload, address);
-}
-
-Command continuous_range_command(ValueRange range, std::uint8_t address) {
-  Payload payload = begun(Mode::ContinuousRange);
-  append(payload, range);
-  return framed(payload, address);
-}
-
-Command continuous_mean_range_command(std::uint8_t scans, ValueRange range, std::uint8_t address) {
-  Payload payload = begun(Mode::ContinuousMeanRange);
-  payload.push_back(scans);
-  append(payload, range);
-  return framed(payload, address);
-}
-
-Command continuous_fields_command(ValueRange range, std::uint8_t address) {
-  Payload payload = begun(Mode::ContinuousFields);
-  append(payload, range);
-  return framed(payload, address);
-}
-
-Command range_command(ValueRange range, std::uint8_t address) {
-  Payload payload;
-  payload.push_back(static_cast<std::uint8_t>(Request::Range));
-  append(payload, range);
-  return framed(payload, address);
-}
-
-Command mean_range_command(std::uint8_t scans, ValueRange range, std::uint8_t address) {
-  Payload payload = begun(Request::MeanRange, scans);
-  append(payload, range);
   return framed(payload, address);
 }
 
@@ -219,14 +108,6 @@ Command write_configuration_command(const Configuration& configuration, std::uin
   Payload payload;
   payload.push_back(static_cast<std::uint8_t>(Request::WriteConfiguration));
   payload.append(configuration.block());
-  return framed(payload, address);
-}
-
-Command write_second_configuration_command(ByteView block, std::uint8_t address) {
-  if (block.size() != kSecondBytes) return {};
-  Payload payload;
-  payload.push_back(static_cast<std::uint8_t>(Request::WriteSecond));
-  payload.append(block);
   return framed(payload, address);
 }
 
@@ -277,12 +158,6 @@ std::optional<VariantAnswer> variant_answer(const Telegram& telegram) {
       .now = {.angle_degrees = word_at(data, 1), .step_centidegrees = word_at(data, 3)}};
 }
 
-std::optional<StartUpRateAnswer> start_up_rate_answer(const Telegram& telegram) {
-  if (!is(telegram, Answer::StartUpRate) || telegram.data().size() != 2) return std::nullopt;
-  return StartUpRateAnswer{.done = telegram.data()[0] == 1,
-                           .now = static_cast<StartUpRate>(telegram.data()[1])};
-}
-
 std::optional<ConfigurationAnswer> configuration_answer(const Telegram& telegram) {
   constexpr std::size_t kShortest = 7;  // up to the unit, which a driver needs
   const bool written = is(telegram, Answer::ConfigurationWritten);
@@ -300,40 +175,11 @@ std::optional<DeviceStatus> device_status(const Telegram& telegram) {
   constexpr std::size_t kLength = 0x9A;
   if (!is(telegram, Answer::Status) || telegram.payload.size() != kLength) return std::nullopt;
   const ByteView p = telegram.payload;  // the manual counts bytes from the code, byte 0
-  DeviceStatus status{.software = text_of(p.subspan(1, 7)),
-                      .mode = p[8],
+  return DeviceStatus{.software = text_of(p.subspan(1, 7)),
                       .faulty = p[9] != 0,
-                      .variant_type = p[18],
-                      .motor_microseconds = word_at(p, 67),
                       .measuring_mode = p[102],
                       .variant = {word_at(p, 107), word_at(p, 109)},
-                      .baud = baud_of_word(word_at(p, 116)),
-                      .start_up_rate = p[119],
-                      .address = p[120],
-                      .in_millimetres = p[122] == 1,
-                      .laser_on = p[123] != 0};
-  for (std::size_t i = 0; i < status.pollution.size(); ++i) {
-    status.pollution[i] = word_at(p, 19 + 2 * i);
-  }
-  return status;
-}
-
-std::optional<std::size_t> error_count(const Telegram& telegram) {
-  if (!is(telegram, Answer::Errors) || telegram.data().size() % 2 != 0) return std::nullopt;
-  return telegram.data().size() / 2;
-}
-
-DeviceError error_at(const Telegram& telegram, std::size_t i) {
-  constexpr unsigned kGone = 0x80;
-  const unsigned type = telegram.data()[2 * i];
-  return {.severity = static_cast<std::uint8_t>(type & ~kGone),
-          .present = (type & kGone) == 0,
-          .number = telegram.data()[2 * i + 1]};
-}
-
-std::string error_text(const DeviceError& error) {
-  return std::string(severity_text(error.severity)) + " " + std::to_string(error.number) + ": " +
-         number_text(error.number) + (error.present ? "" : " (no longer present)");
+                      .in_millimetres = p[122] == 1};
 }
 
 }  // namespace drivers::lms200

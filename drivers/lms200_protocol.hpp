@@ -18,8 +18,8 @@
 
 namespace drivers::lms200 {
 
-/// The longest, writing the second part of the configuration, has 91 bytes.
-using Command = FixedBytes<96>;
+/// The longest, writing the configuration, has 41 bytes.
+using Command = FixedBytes<48>;
 
 /// A field of view and its step in the device's units: degrees and hundredths of a degree.
 struct Variant {
@@ -45,27 +45,12 @@ constexpr unsigned kStartRate = 9600;  // [bit/s] of the greeting of a starting 
 enum class Mode : std::uint8_t {
   Installation = 0x00,  // needs the password
   Diagnosis = 0x10,
-  MinimumPerSegment = 0x20,
-  MinimumOnObject = 0x21,
-  MinimumVertical = 0x22,
-  MinimumVerticalOnObject = 0x23,
   Continuous = 0x24,
   OnRequest = 0x25,        // after power-on
   ContinuousMeans = 0x26,  // needs a number of scans
   ContinuousRange = 0x27,  // takes first and last value
   ContinuousMeanRange = 0x28,
-  ContinuousFields = 0x29,  // takes first and last value
-  PartialScans = 0x2A,      // one after each mirror turn
-};
-
-/// The kinds of measured values that a request can ask for.
-enum class Wanted : std::uint8_t {
-  All = 0x01,
-  VerticalDistance = 0x02,
-  TaughtField = 0x03,
-  EverySecond = 0x06,
-  EveryTwentieth = 0x07,
-  PartialScan = 0x08,
+  PartialScans = 0x2A,  // one after each mirror turn
 };
 
 enum class StartUpRate : std::uint8_t { Baud9600 = 0, KeepPresent = 1, KeepType = 2 };
@@ -95,8 +80,6 @@ class Configuration {
   std::uint8_t measuring_mode() const { return block_[kMeasuringMode]; }
   bool in_millimetres() const { return block_[kUnit] == 1; }
 
-  /// Availability level 3 on or off, indices on or off, dazzle switching outputs or not.
-  void set_availability(std::uint8_t bits) { block_[kAvailability] = bits; }
   void set_measuring_mode(std::uint8_t mode) { block_[kMeasuringMode] = mode; }
   void set_millimetres(bool on) { block_[kUnit] = on ? 1 : 0; }
   bool operator==(const Configuration&) const = default;
@@ -112,9 +95,7 @@ class Configuration {
 
 // ---- requests, framed; `address` 0 is broadcast ----------------------------------------------
 
-Command reset_command(std::uint8_t address = kEverybody);
 Command status_command(std::uint8_t address = kEverybody);
-Command error_command(std::uint8_t address = kEverybody);
 Command type_command(std::uint8_t address = kEverybody);
 Command rate_command(Rate rate, std::uint8_t address = kEverybody);
 /// Modes without parameters.
@@ -122,28 +103,13 @@ Command mode_command(Mode mode, std::uint8_t address = kEverybody);
 /// `password` must have 8 characters; otherwise the result is empty.
 Command installation_command(std::string_view password = kFactoryPassword,
                              std::uint8_t address = kEverybody);
-Command continuous_means_command(std::uint8_t scans, std::uint8_t address = kEverybody);
-Command continuous_range_command(ValueRange range, std::uint8_t address = kEverybody);
-Command continuous_mean_range_command(std::uint8_t scans,
-                                      ValueRange range,
-                                      std::uint8_t address = kEverybody);
-Command continuous_fields_command(ValueRange range, std::uint8_t address = kEverybody);
-Command values_command(Wanted wanted, std::uint8_t address = kEverybody);
-Command mean_command(std::uint8_t scans, std::uint8_t address = kEverybody);
-Command range_command(ValueRange range, std::uint8_t address = kEverybody);
-Command mean_range_command(std::uint8_t scans, ValueRange range, std::uint8_t address = kEverybody);
 /// Empty for a variant that does not exist.
 Command variant_command(const Variant& variant, std::uint8_t address = kEverybody);
-/// A stored rate of 500000 leaves the device silent on RS-232: send it only on the user's request.
-Command start_up_rate_command(StartUpRate rate, std::uint8_t address = kEverybody);
 Command read_configuration_command(std::uint8_t address = kEverybody);
 /// Wears out the device's memory: send it only for a block that differs from the one read. Needs
 /// installation mode.
 Command write_configuration_command(const Configuration& configuration,
                                     std::uint8_t address = kEverybody);
-Command read_second_configuration_command(std::uint8_t address = kEverybody);
-/// `block` must have 84 bytes; otherwise the result is empty.
-Command write_second_configuration_command(ByteView block, std::uint8_t address = kEverybody);
 
 // ---- answers ---------------------------------------------------------------------------------
 
@@ -159,7 +125,6 @@ enum class Answer : std::uint8_t {
   RangeValues = 0xB7,
   Type = 0xBA,
   Variant = 0xBB,
-  FieldValues = 0xBE,
   MeanRange = 0xBF,
   StartUpRate = 0xE6,
   Configuration = 0xF4,
@@ -175,12 +140,10 @@ class Health {
 
   /// 0 good, 1 info, 2 warning, 3 error, 4 fatal.
   unsigned level() const { return byte_ & 7U; }
-  bool restart_input() const { return (byte_ & 0x20U) != 0; }
   bool implausible() const { return (byte_ & 0x40U) != 0; }
   bool polluted() const { return (byte_ & 0x80U) != 0; }
   /// Whether a robot may drive by values sent with this status.
   bool usable() const { return level() < 3 && !implausible(); }
-  std::uint8_t byte() const { return byte_; }
   bool operator==(const Health&) const = default;
 
  private:
@@ -203,13 +166,6 @@ struct VariantAnswer {
 };
 std::optional<VariantAnswer> variant_answer(const Telegram& telegram);
 
-struct StartUpRateAnswer {
-  bool done = false;
-  StartUpRate now{};
-  bool operator==(const StartUpRateAnswer&) const = default;
-};
-std::optional<StartUpRateAnswer> start_up_rate_answer(const Telegram& telegram);
-
 /// Reading sets `done`. After writing, `now` is the block in force: compare it with the one sent.
 struct ConfigurationAnswer {
   bool done = false;
@@ -219,34 +175,11 @@ std::optional<ConfigurationAnswer> configuration_answer(const Telegram& telegram
 
 struct DeviceStatus {
   std::string_view software{};  // 7 characters; valid as long as the telegram
-  std::uint8_t mode = 0;
   bool faulty = false;
-  std::uint8_t variant_type = 0;
-  std::array<std::uint16_t, 8> pollution{};  // of each part of the window
-  std::uint16_t motor_microseconds = 0;      // for 1/90 of a turn; 148 nominal
   std::uint8_t measuring_mode = 0;
   Variant variant{};
-  unsigned baud = 0;  // [bit/s]; 0: unknown word
-  std::uint8_t start_up_rate = 0;
-  std::uint8_t address = 0;
   bool in_millimetres = false;
-  bool laser_on = false;
 };
 std::optional<DeviceStatus> device_status(const Telegram& telegram);
-
-/// One entry of the error memory.
-struct DeviceError {
-  std::uint8_t severity = 0;  // 0 none, 1 info, 2 warning, 3 error, 4 fatal
-  bool present = true;
-  std::uint8_t number = 0;
-  bool operator==(const DeviceError&) const = default;
-};
-
-/// Number of entries in an answer to error_command(); nullopt for any other telegram.
-std::optional<std::size_t> error_count(const Telegram& telegram);
-/// Entry `i` < error_count().
-DeviceError error_at(const Telegram& telegram, std::size_t i);
-/// "error 29: the motor's speed is wrong (no longer present)".
-std::string error_text(const DeviceError& error);
 
 }  // namespace drivers::lms200

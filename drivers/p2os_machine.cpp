@@ -55,14 +55,9 @@ void PioneerMachine::opened(double now, unsigned baud) {
 }
 
 void PioneerMachine::closed(double /*now*/, const std::string& why) {
-  orders_.clear();
   reader_.clear();
   if (step_ != Step::Left) step_ = Step::NoLine;
-  state_.running = false;
-  state_.motors_on = false;
-  off_.cancel();
-  trouble_ = why;
-  deadline_ = std::numeric_limits<double>::infinity();
+  lose_line(why);
 }
 
 void PioneerMachine::rate_set(double /*now*/, unsigned /*baud*/) {
@@ -241,7 +236,7 @@ void PioneerMachine::take_state(double now, ByteView body) {
   state_.bumper_front = packet_.front_bumpers != 0;
   state_.bumper_rear = packet_.rear_bumpers != 0;
   state_.stalled = packet_.stalled();
-  state_.faulty = packet_.tail && packet_.tail->faults != 0;
+  state_.faulty = packet_.faults.value_or(0) != 0;
   state_.volts = packet_.volts;
   for (std::size_t i = 0; i < packet_.sonar_count; ++i) {
     const SonarReading& reading = packet_.sonars[i];
@@ -343,7 +338,7 @@ algo::DeviceReport PioneerMachine::report(double now) const {
   out.well = state_.running && trouble_.empty() && !state_.stop_button && !state_.faulty;
   out.sentence = trouble_;
   if (state_.running && state_.faulty) {
-    out.sentence = fmt::format("The base reports fault flags 0x{:04x}.", packet_.tail->faults);
+    out.sentence = fmt::format("The base reports fault flags 0x{:04x}.", *packet_.faults);
   }
   if (state_.running && state_.stop_button) {
     out.sentence = "Its stop button is pressed: release it, then arm.";

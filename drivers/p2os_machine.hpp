@@ -1,7 +1,6 @@
 // drivers/p2os_machine.hpp: finds a Pioneer base, opens its session, drives and closes it.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -31,8 +30,6 @@ class PioneerMachine final : public BaseMachine {
   void receive(double now, ByteView bytes) override;
   void lost_bytes() override { reader_.clear(); }
   void advance(double now) override;
-  double wake_time() const override { return std::min(deadline_, off_.until()); }
-  std::optional<LineOrder> next_order() override { return orders_.next(); }
   void leave(double now) override;
   bool left() const override { return step_ == Step::Left; }
 
@@ -40,7 +37,6 @@ class PioneerMachine final : public BaseMachine {
   void cut(double now) override;
   void drive(double now, const algo::Twist2& twist) override;
   void halt(double now) override;
-  const BaseState& state() const override { return state_; }
   double watchdog() const override { return setup_.watchdog; }
   WheelDynamics dynamics() const override {
     return {.ramp_of_wheels = false,
@@ -66,7 +62,6 @@ class PioneerMachine final : public BaseMachine {
   void ask_watchdog(double now);
 
   PioneerSetup setup_;
-  LineOrders orders_{};
   PacketReader reader_{};
   Handshake handshake_{};
   Step step_ = Step::NoLine;
@@ -74,25 +69,17 @@ class PioneerMachine final : public BaseMachine {
   std::size_t rate_index_ = 0;
   unsigned port_baud_ = 0;
   bool fixed_rate_ = false;
-  int tries_left_ = 0;
-  double deadline_ = 0;         // [s]
-  double searching_since_ = 0;  // [s]
-  std::string trouble_{"The port has not been opened yet."};
 
   Identity identity_{};
   State packet_{};
   Odometer odometer_{};
-  algo::Pose2 found_at_{};  // the base's odometry when it was found
-  algo::Pose2 lost_at_{};   // our pose then: the last one before the base was lost
-  BaseState state_{};
+  algo::Pose2 found_at_{};        // the base's odometry when it was found
+  algo::Pose2 lost_at_{};         // our pose then: the last one before the base was lost
   int watchdog_asked_ = 0;        // times
   double watchdog_asked_at_ = 0;  // [s]
   algo::Twist2 sent_{};           // the command in force
   double sent_at_ = 0;            // [s]
-  bool braking_ = false;          // until the next motion command
-  double braking_since_ = 0;      // [s]
-  SwitchingOff off_{};
-  std::uint64_t jumps_ = 0;  // jumps of the odometry, left out
+  std::uint64_t jumps_ = 0;       // jumps of the odometry, left out
 };
 
 }  // namespace drivers::p2os

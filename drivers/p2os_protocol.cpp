@@ -18,12 +18,9 @@ constexpr std::size_t kSumBytes = 2;
 
 constexpr std::uint8_t kPositiveArgument = 0x3B;
 constexpr std::uint8_t kNegativeArgument = 0x1B;
-constexpr std::uint8_t kStringArgument = 0x2B;
 
 constexpr std::uint8_t kStopped = 0x32;
 constexpr std::uint8_t kMoving = 0x33;
-constexpr std::uint8_t kEncoderPacket = 0x90;
-constexpr std::uint8_t kGyroPacket = 0x98;
 constexpr std::uint8_t kConfigurationPacket = 0x20;
 
 Packet packed(ByteView body) {
@@ -51,17 +48,9 @@ std::string take_text(ByteView& bytes) {
 void decode_tail(ByteView rest, State& state) {
   constexpr std::size_t kWithBattery = 7;
   constexpr std::size_t kWhole = 12;
-  if (rest.size() >= 5) {
-    state.analog = rest[2];
-    state.digital_in = rest[3];
-  }
   // The older byte field holds up to 25.5 V, too little for a 24 V base being charged.
   if (rest.size() >= kWithBattery && word_at(rest, 5) != 0) state.volts = word_at(rest, 5) * 0.1;
-  if (rest.size() >= kWhole) {
-    state.tail = StateTail{.charge_state = rest[7],
-                           .turn_rate = signed_word_at(rest, 8) * 0.1 * kRadiansPerDegree,
-                           .faults = word_at(rest, 10)};
-  }
+  if (rest.size() >= kWhole) state.faults = word_at(rest, 10);
 }
 
 }  // namespace
@@ -108,27 +97,6 @@ Packet command(Code code, int argument) {
   return packed(body);
 }
 
-Packet command(Code code, ByteView text) {
-  constexpr std::size_t kBefore = 3;
-  const ByteView kept = text.first(std::min(text.size(), kLongestBody - kBefore));
-  FixedBytes<kLongestBody> body;
-  body.push_back(static_cast<std::uint8_t>(code));
-  body.push_back(kStringArgument);
-  body.push_back(static_cast<std::uint8_t>(kept.size()));
-  body.append(kept);
-  return packed(body.view());
-}
-
-Packet wheel_velocities(double left, double right, double limit, const Units& units) {
-  constexpr int kMostSteps = 127;
-  const auto steps = [&](double speed) {
-    const double clamped = std::clamp(speed, -limit, limit);
-    return static_cast<std::uint8_t>(rounded(clamped / units.wheel_step, kMostSteps));
-  };
-  // Two signed bytes in a word that is always sent as positive.
-  return command(Code::WheelVelocities, (steps(left) << 8) | steps(right));
-}
-
 VelocityPackets velocity(const algo::Twist2& twist, const algo::Twist2& limit) {
   constexpr int kMost = 0x7FFF;
   const double v = std::clamp(twist.v, -limit.v, limit.v);
@@ -169,7 +137,6 @@ bool decode_state(ByteView body, State& state, const Units& units) {
 
   const unsigned position_mask = (1U << units.position_bits) - 1U;
   const unsigned bumpers = word_at(body, 12);
-  state.moving = body[0] == kMoving;
   state.x_count = static_cast<std::uint16_t>(word_at(body, 1) & position_mask);
   state.y_count = static_cast<std::uint16_t>(word_at(body, 3) & position_mask);
   state.heading = algo::wrap_angle(signed_word_at(body, 5) * units.radians_per_count);
@@ -186,16 +153,9 @@ bool decode_state(ByteView body, State& state, const Units& units) {
     state.sonars[i] = {.index = body[at], .range = word_at(body, at + 1) / 1000.0};
   }
   state.sonar_count = sonars;
-  state.analog.reset();
-  state.digital_in.reset();
-  state.tail.reset();
+  state.faults.reset();
   decode_tail(body.subspan(kSonarsAt + sonars * kSonarBytes), state);
   return true;
-}
-
-std::optional<EncoderCounts> encoder_counts(ByteView body) {
-  if (body.size() < 9 || body[0] != kEncoderPacket) return std::nullopt;
-  return EncoderCounts{.left = signed_long_at(body, 1), .right = signed_long_at(body, 5)};
 }
 
 /// Kind, type, subtype, serial number, four motors, five limits, name; then cycle and rates
@@ -212,19 +172,6 @@ std::optional<double> configured_watchdog(ByteView body) {
   take_text(rest);
   if (rest.size() < kUpToWatchdog + 2) return std::nullopt;
   return word_at(rest, kUpToWatchdog) / 1000.0;
-}
-
-std::optional<double> gyro_counts(ByteView body) {
-  constexpr double kRest = 512;
-  constexpr std::size_t kReadingBytes = 3;  // rate, temperature
-  if (body.size() < 2 || body[0] != kGyroPacket) return std::nullopt;
-  const std::size_t readings = body[1];
-  if (readings == 0 || body.size() < 2 + readings * kReadingBytes) return std::nullopt;
-  double sum = 0;
-  for (std::size_t i = 0; i < readings; ++i) {
-    sum += kRest - word_at(body, 2 + i * kReadingBytes);  // below rest is ccw
-  }
-  return sum / static_cast<double>(readings);
 }
 
 double Odometer::difference(std::uint16_t now, std::uint16_t before) const {

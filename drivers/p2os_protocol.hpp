@@ -22,9 +22,8 @@
 namespace drivers::p2os {
 
 constexpr std::size_t kLongestBody = 200;
-constexpr double kStatePeriod = 0.1;            // [s] between state packets
-constexpr double kCommandPeriod = 0.1;          // [s] at which an unchanged command is repeated
-constexpr double kLinkLost = 3 * kStatePeriod;  // [s] without a state packet: stop
+constexpr double kStatePeriod = 0.1;    // [s] between state packets
+constexpr double kCommandPeriod = 0.1;  // [s] at which an unchanged command is repeated
 
 /// Check value over a body.
 std::uint16_t checksum(ByteView body);
@@ -44,20 +43,15 @@ ByteView body_of(ByteView packet);
 // ---- commands --------------------------------------------------------------------------------
 
 enum class Code : std::uint8_t {
-  Pulse = 0,  // only feeds the watchdog
   Open = 1,
   Close = 2,
   Enable = 4,        // 0 or 1: the motors
   Acceleration = 5,  // [mm/s2], negative sets the deceleration
   SpeedLimit = 6,    // [mm/s]
   ZeroOdometry = 7,
-  Move = 8,            // [mm]
-  Rotate = 9,          // [deg/s] left
-  TurnLimit = 10,      // [deg/s]
-  Velocity = 11,       // [mm/s]
-  Heading = 12,        // [deg] absolute
-  HeadingChange = 13,  // [deg]
-  Say = 15,            // tones, as a string
+  Rotate = 9,      // [deg/s] left
+  TurnLimit = 10,  // [deg/s]
+  Velocity = 11,   // [mm/s]
   Configuration = 18,
   Encoders = 19,          // packets: 0 off, 1 once, 2 each period
   TurnRate = 21,          // [deg/s] left
@@ -68,7 +62,6 @@ enum class Code : std::uint8_t {
   BumpStall = 44,      // bit 0 front, bit 1 rear bumpers stop the base
   HostBaud = 50,       // 0..4: 9600, 19200, 38400, 57600, 115200
   EmergencyStop = 55,  // full deceleration; the motors stay on
-  Gyro = 58,           // packets: 0 off, 1 once, 2 each period
   Reset = 253,
 };
 
@@ -77,22 +70,16 @@ using Packet = FixedBytes<Framing::kLongest>;
 Packet command(Code code);
 /// `argument` is clamped to 16 bits and a sign.
 Packet command(Code code, int argument);
-/// `text` is cut to fit a packet.
-Packet command(Code code, ByteView text);
 
 /// The units of a type of base.
 struct Units {
   double metres_per_count = 1e-3;                          // of position (DistConvFactor)
   double radians_per_count = 2 * std::numbers::pi / 4096;  // of heading (AngleConvFactor)
   double metres_per_second = 1e-3;  // per unit of wheel speed (VelConvFactor)
-  double wheel_step = 0.02;         // [m/s] unit of WheelVelocities
   unsigned position_bits = 15;      // 12 on old bases
 };
 
-/// Wheel speeds [m/s], each clamped to +-`limit` first. The unit sent is coarse: 20 mm/s.
-Packet wheel_velocities(double left, double right, double limit, const Units& units = {});
-
-/// The same motion at a finer resolution, 1 mm/s and 1 deg/s, in two packets.
+/// A motion at a resolution of 1 mm/s and 1 deg/s, in two packets.
 struct VelocityPackets {
   Packet velocity{};
   Packet turn_rate{};
@@ -139,18 +126,10 @@ struct SonarReading {
   bool operator==(const SonarReading&) const = default;
 };
 
-/// Fields that newer firmware adds at the end of a state packet.
-struct StateTail {
-  std::uint8_t charge_state = 0;
-  double turn_rate = 0;  // [rad/s]
-  std::uint16_t faults = 0;
-};
-
 /// A state packet (SIP). Counts are as sent; Odometer converts them to a pose.
 struct State {
   static constexpr std::size_t kSonars = 64;  // more than fit into a packet
 
-  bool moving = false;
   std::uint16_t x_count = 0;
   std::uint16_t y_count = 0;
   double heading = 0;      // [rad] in (-pi, pi]
@@ -164,15 +143,12 @@ struct State {
   std::uint16_t flags = 0;
   std::array<SonarReading, kSonars> sonars{};  // the first `sonar_count` are new readings
   std::size_t sonar_count = 0;
-  std::optional<std::uint8_t> analog{};
-  std::optional<std::uint8_t> digital_in{};
-  std::optional<StateTail> tail{};
+  std::optional<std::uint16_t> faults{};  // only from newer firmware
 
   bool motors_on() const { return (flags & 1U) != 0; }
   /// While pressed, the motors are off and Code::Enable does nothing.
   bool stop_button() const { return (flags & 0x60U) != 0; }
   bool stalled() const { return left_stalled || right_stalled; }
-  bool bumper_pressed() const { return front_bumpers != 0 || rear_bumpers != 0; }
 };
 
 /// Whether `body` is that of a state packet.
@@ -180,20 +156,9 @@ bool is_state(ByteView body);
 /// Fills `state`. False, without a change, when `body` is no state packet or ends too early.
 bool decode_state(ByteView body, State& state, const Units& units = {});
 
-struct EncoderCounts {
-  std::int32_t left = 0;
-  std::int32_t right = 0;
-  bool operator==(const EncoderCounts&) const = default;
-};
-std::optional<EncoderCounts> encoder_counts(ByteView body);
-
 /// [s] The base's watchdog, from the answer to Code::Configuration; 0: off. nullopt when `body` is
 /// no such answer or ends too early.
 std::optional<double> configured_watchdog(ByteView body);
-
-/// Mean of a gyro packet's readings above rest, ccw positive, in the sensor's own unit; its scale
-/// depends on the base.
-std::optional<double> gyro_counts(ByteView body);
 
 /// Adds up the differences of the wrapping position counts.
 class Odometer {

@@ -24,14 +24,15 @@ constexpr std::uint16_t kStopFault = 16;
 constexpr int kQuickLoopError = 1;  // of ^CLERD: after 0.25 s of an error of 100
 // An answer that contradicts the earlier ones must be repeated: lines carry no check value.
 constexpr int kBelieved = 5;
-constexpr int kAgreeing = 2;  // answers that say a wheel is blocked
+constexpr int kAgreeing = 2;         // answers that say a wheel is blocked
+constexpr int kClosedLoopSpeed = 1;  // of the parameter MMOD
 
 }  // namespace
 
 RoboteqMachine::RoboteqMachine(RoboteqSetup setup) : setup_(std::move(setup)) {
   const auto whole = [](double value) { return static_cast<int>(std::lround(value)); };
   wanted_ = {{"RWD", whole(setup_.watchdog * 1000), false},
-             {"MMOD", static_cast<int>(LoopMode::ClosedLoopSpeed), true},
+             {"MMOD", kClosedLoopSpeed, true},
              {"MXRPM", whole(setup_.wheel.full_speed_rpm), true},
              {"EPPR", whole(setup_.wheel.encoder_lines), true},
              {"MAC", wheel_ramp(), true},
@@ -78,13 +79,8 @@ void RoboteqMachine::greet(double now) {
 }
 
 void RoboteqMachine::closed(double /*now*/, const std::string& why) {
-  orders_.clear();
   if (step_ != Step::Left) step_ = Step::NoLine;
-  state_.running = false;
-  state_.motors_on = false;
-  off_.cancel();
-  trouble_ = why;
-  deadline_ = std::numeric_limits<double>::infinity();
+  lose_line(why);
 }
 
 void RoboteqMachine::receive(double now, ByteView bytes) {

@@ -36,8 +36,6 @@ class RoboteqMachine final : public BaseMachine {
   void receive(double now, ByteView bytes) override;
   void lost_bytes() override { reader_.clear(); }
   void advance(double now) override;
-  double wake_time() const override { return std::min(deadline_, off_.until()); }
-  std::optional<LineOrder> next_order() override { return orders_.next(); }
   void leave(double now) override;
   bool left() const override { return step_ == Step::Left; }
 
@@ -45,7 +43,6 @@ class RoboteqMachine final : public BaseMachine {
   void cut(double now) override;
   void drive(double now, const algo::Twist2& twist) override;
   void halt(double now) override;
-  const BaseState& state() const override { return state_; }
   double watchdog() const override { return setup_.watchdog; }
   WheelDynamics dynamics() const override {
     const double ramp =
@@ -105,13 +102,8 @@ class RoboteqMachine final : public BaseMachine {
 
   RoboteqSetup setup_;
   std::vector<Wanted> wanted_{};
-  LineOrders orders_{};
   LineReader reader_{};
   Step step_ = Step::NoLine;
-  int tries_left_ = 0;
-  double deadline_ = 0;         // [s]
-  double searching_since_ = 0;  // [s]
-  std::string trouble_{"The port has not been opened yet."};
   std::string firmware_{};
   std::vector<std::string> remarks_{};
   std::size_t parameter_ = 0;  // index in wanted_
@@ -125,17 +117,13 @@ class RoboteqMachine final : public BaseMachine {
   std::array<int, 2> stalls_{};  // answers to ?FM and ?FS that say so, in a row
   bool enabled_ = false;
   double enabled_at_ = 0;     // [s]
-  bool braking_ = false;      // until the next motion command
-  double braking_since_ = 0;  // [s]
   double braked_at_ = 0;      // [s] the newest order to brake
-  SwitchingOff off_{};
   double current_since_ = 0;  // [s] since when it is too high; 0: it is not
   double inputs_at_ = 0;      // [s] time of the newest bumper reading
   bool bumper_front_ = false;
   bool bumper_rear_ = false;
   bool inputs_told_ = true;  // of all bumpers, by the newest reading
   std::uint64_t refused_ = 0;
-  BaseState state_{};
 };
 
 }  // namespace drivers::roboteq

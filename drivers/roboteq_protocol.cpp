@@ -30,15 +30,6 @@ void append(Line& line, std::string_view name, int first, int second) {
   append_number(line, second);
 }
 
-Line both(std::string_view name, int left, int right) {
-  Line line;
-  append(line, name, 1, left);
-  line.append("_");
-  append(line, name, 2, right);
-  line.append(kEnd);
-  return line;
-}
-
 bool is_name(std::string_view text) {
   constexpr std::size_t kLongest = 8;
   return !text.empty() && text.size() <= kLongest &&
@@ -100,29 +91,18 @@ Line command(std::string_view name, int channel, int value) {
 }
 
 Line drive(int left, int right) {
-  return both("!G", std::clamp(left, -kFull, kFull), std::clamp(right, -kFull, kFull));
-}
-
-Line drive_rpm(int left, int right) {
-  return both("!S", left, right);
-}
-
-Line restart() {
-  return command("%RESET", 321654987);  // this number guards against accidental resets
+  Line line;
+  append(line, "!G", 1, std::clamp(left, -kFull, kFull));
+  line.append("_");
+  append(line, "!G", 2, std::clamp(right, -kFull, kFull));
+  line.append(kEnd);
+  return line;
 }
 
 Line query(std::string_view name) {
   Line line;
   line.append("?");
   line.append(name);
-  line.append(kEnd);
-  return line;
-}
-
-Line query(std::string_view name, int channel) {
-  Line line;
-  line.append("?");
-  append(line, name, channel);
   line.append(kEnd);
   return line;
 }
@@ -186,13 +166,11 @@ bool update(State& state, const Reply& reply) {
     state.battery_volts = reply.values[reply.count == 1 ? 0 : 1] * 0.1;
   } else if (reply.name == "FF") {
     state.faults = static_cast<std::uint16_t>(reply.values[0]);
-  } else if (reply.name == "FS") {
-    state.status = static_cast<std::uint16_t>(reply.values[0]);
   } else if (reply.name == "FM" && pair) {
     state.motor_flags = {static_cast<std::uint16_t>(reply.values[0]),
                          static_cast<std::uint16_t>(reply.values[1])};
   } else {
-    return false;
+    return reply.name == "FS";
   }
   return true;
 }
@@ -220,18 +198,6 @@ std::string fault_text(std::uint16_t faults) {
                                               "power transistor failed",
                                               "default configuration loaded"};
   return words_of(faults, kWords);
-}
-
-std::string status_text(std::uint16_t status) {
-  constexpr std::array<const char*, 8> kWords{"commanded by serial line",
-                                              "commanded by pulses",
-                                              "commanded by voltage",
-                                              "power stage off",
-                                              "stalled",
-                                              "at a limit",
-                                              "an unnamed bit",
-                                              "script running"};
-  return words_of(status, kWords);
 }
 
 bool must_stop(std::uint16_t faults) {

@@ -21,10 +21,6 @@ namespace drivers::roboteq {
 
 using Line = FixedBytes<96>;
 
-constexpr std::uint8_t kEnquiry = 0x05;  // answered by kAck when a controller is there
-constexpr std::uint8_t kAck = 0x06;
-constexpr int kFactoryWatchdog_ms = 1000;
-
 // ---- commands: answered by + or - ------------------------------------------------------------
 
 /// A command with or without a channel: ("!C", 1, 0) gives "!C 1 0". Ends with CR.
@@ -34,12 +30,6 @@ Line command(std::string_view name, int channel, int value);
 
 /// Both motors, -1000..1000 of the full speed (closed loop) or power.
 Line drive(int left, int right);
-/// Both motors' speeds [rpm] in closed loop.
-Line drive_rpm(int left, int right);
-
-inline Line stop_channel(int channel) {
-  return command("!MS", channel);
-}
 /// Motors off until release_stop(); the earlier command is discarded.
 inline Line emergency_stop() {
   return command("!EX");
@@ -51,9 +41,6 @@ inline Line set_counter(int channel, int count) {
   return command("!C", channel, count);
 }
 /// [0.1 rpm/s]
-inline Line acceleration(int channel, int value) {
-  return command("!AC", channel, value);
-}
 inline Line deceleration(int channel, int value) {
   return command("!DC", channel, value);
 }
@@ -61,33 +48,11 @@ inline Line deceleration(int channel, int value) {
 inline Line echo_off() {
   return command("^ECHOF", 1);
 }
-/// 0 turns the watchdog off.
-inline Line set_watchdog(int milliseconds) {
-  return command("^RWD", milliseconds);
-}
-enum class LoopMode : std::uint8_t { Open = 0, ClosedLoopSpeed = 1, PositionCount = 2 };
-inline Line set_loop_mode(int channel, LoopMode mode) {
-  return command("^MMOD", channel, static_cast<int>(mode));
-}
-/// [rpm] at a command of 1000.
-inline Line set_full_speed(int channel, int rpm) {
-  return command("^MXRPM", channel, rpm);
-}
-/// Encoder lines per turn: a quarter of its counts.
-inline Line set_encoder_lines(int channel, int lines) {
-  return command("^EPPR", channel, lines);
-}
-/// Parameters last until power-off unless stored.
-inline Line store_parameters() {
-  return command("%EESAV");
-}
-Line restart();
 
 // ---- queries: answered by NAME=values --------------------------------------------------------
 
 /// "?C", or a parameter as "~RWD".
 Line query(std::string_view name);
-Line query(std::string_view name, int channel);
 Line read_parameter(std::string_view name);
 /// Makes the controller repeat the queries `names` in turn, one every `milliseconds`. Empty when
 /// they do not fit a line.
@@ -130,7 +95,6 @@ class LineReader {
         continue;
       }
       if (line_.size() > 0 && !too_long_) on_line(line_.text());
-      if (too_long_) ++overlong_;
       line_.clear();
       too_long_ = false;
     }
@@ -141,7 +105,6 @@ class LineReader {
     line_.clear();
     too_long_ = false;
   }
-  std::uint64_t overlong_lines() const { return overlong_; }
 
  private:
   static constexpr std::size_t kLongest = 160;
@@ -153,7 +116,6 @@ class LineReader {
 
   FixedBytes<kLongest> line_{};
   bool too_long_ = false;
-  std::uint64_t overlong_ = 0;
 };
 
 // ---- reports of the controller ---------------------------------------------------------------
@@ -165,17 +127,16 @@ struct State {
   std::optional<double> battery_volts{};
   std::optional<std::array<double, 2>> motor_amperes{};
   std::optional<std::uint16_t> faults{};
-  std::optional<std::uint16_t> status{};
   std::optional<std::array<std::uint16_t, 2>> motor_flags{};
   bool one_channel = false;  // it reports only one motor: it cannot drive a base
 };
 
-/// Updates the state by `reply`; false when `reply` holds no field of State.
+/// Updates the state by `reply`; false when `reply` holds no field of State. The answer to ?FS is
+/// only for says_stalled(), and gives true.
 bool update(State& state, const Reply& reply);
 
 /// Each fault in words, separated by commas; empty when there is none.
 std::string fault_text(std::uint16_t faults);
-std::string status_text(std::uint16_t status);
 /// From an answer to ?FM or ?FS: a motor is stalled or has a loop error.
 bool says_stalled(const Reply& reply);
 /// Faults that stop the power stage or make the motion unreliable: the run must end.

@@ -23,7 +23,6 @@ class ArmReach {
  public:
   explicit ArmReach(const RobotModel& robot);
 
-  const algo::MobileArm& body() const { return body_; }
   /// To all of `obstacles` within reach, and to the robot itself where they overlap. The robot
   /// counts as standing upright.
   NearestPart nearest(const algo::BodyJoints& q, const ObstacleSet& obstacles) const;

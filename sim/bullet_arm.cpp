@@ -181,12 +181,6 @@ algo::JointValues BulletArm::position() const {
   return out;
 }
 
-algo::JointValues BulletArm::rate() const {
-  algo::JointValues out{};
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = body_->getJointVel(static_cast<int>(i));
-  return out;
-}
-
 bool BulletArm::settled() const {
   for (std::size_t i = 0; i < motors_.size(); ++i) {
     const int joint = static_cast<int>(i);

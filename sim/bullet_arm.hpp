@@ -34,7 +34,6 @@ class BulletArm {
   void place(const btRigidBody& chassis);
 
   algo::JointValues position() const;  // [rad]
-  algo::JointValues rate() const;      // [rad/s]
   /// The link that touches an obstacle or the floor after a step.
   std::optional<algo::BodyLink> touched() const;
   /// Frame `joints` of the arm in W, by Bullet.

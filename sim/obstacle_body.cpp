@@ -25,10 +25,4 @@ BulletPtr<btCollisionShape> obstacle_shape(const algo::Obstacle& obstacle, doubl
   return shape;
 }
 
-btTransform obstacle_transform(const algo::Obstacle& obstacle) {
-  const algo::Pose2& pose = obstacle.pose_W;
-  return btTransform(btQuaternion(btVector3(0, 0, 1), pose.heading),
-                     btVector3(pose.x, pose.y, (obstacle.bottom + obstacle.height) / 2));
-}
-
 }  // namespace sim

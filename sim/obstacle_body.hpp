@@ -12,7 +12,4 @@ namespace sim {
 /// Bullet rounds the hull's surface by `margin` [m]; good for contacts, not for ranges.
 BulletPtr<btCollisionShape> obstacle_shape(const algo::Obstacle& obstacle, double margin);
 
-/// The pose of its centre: half its height above the floor.
-btTransform obstacle_transform(const algo::Obstacle& obstacle);
-
 }  // namespace sim

@@ -21,6 +21,10 @@ class Random {
   double uniform();
   /// In [low, high).
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
+  /// A whole number below `count`.
+  std::size_t below(std::size_t count) {
+    return static_cast<std::size_t>(uniform() * static_cast<double>(count));
+  }
   /// Fills `out` with standard normal numbers.
   void fill_normal(std::span<double> out);
   /// Fills `out` with numbers uniform in [-1, 1).

@@ -223,15 +223,4 @@ void SolidCaster::meet_floor(const algo::Vec3& from, const algo::Vec3& way, Soli
   hit.range = met;
 }
 
-double SolidCaster::ground_at(const algo::Vec2& p_W) const {
-  double height = 0;
-  for (const Solid& solid : solids_) {
-    if (!algo::is_ground(solid.obstacle) || !inside(solid.outline_W, p_W)) continue;
-    const double top = algo::top_at(solid.obstacle, p_W);
-    const bool trench = std::holds_alternative<algo::Trench>(solid.obstacle.shape);
-    height = trench ? std::min(height, top) : std::max(height, top);
-  }
-  return height;
-}
-
 }  // namespace sim

@@ -33,8 +33,6 @@ class SolidCaster {
   std::optional<SolidHit> cast(const algo::Vec3& from_W,
                                const algo::Vec3& way_W,
                                double range_max) const;
-  /// [m] Height of the ground at `p_W`: of the highest ramp there, of a trench's bottom, or 0.
-  double ground_at(const algo::Vec2& p_W) const;
 
  private:
   /// An obstacle as a ray meets it: an outline or a circle, below a plane.

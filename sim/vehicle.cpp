@@ -11,10 +11,6 @@ double finite(double value) {
   return std::isfinite(value) ? value : 0;
 }
 
-double towards(double now, double wanted, double most) {
-  return now + std::clamp(wanted - now, -most, most);
-}
-
 }  // namespace
 
 Substeps::Substeps(double period, double rate) {
@@ -37,8 +33,8 @@ algo::Twist2 ramped(const algo::Twist2& now,
                     const algo::Twist2& wanted,
                     const RobotModel& vehicle,
                     double dt) {
-  return {towards(now.v, wanted.v, vehicle.max_acceleration * dt),
-          towards(now.omega, wanted.omega, vehicle.max_angular_acceleration * dt)};
+  return {algo::towards(now.v, wanted.v, vehicle.max_acceleration * dt),
+          algo::towards(now.omega, wanted.omega, vehicle.max_angular_acceleration * dt)};
 }
 
 }  // namespace sim

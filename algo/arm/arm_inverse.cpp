@@ -102,20 +102,6 @@ std::optional<ArmJoints> arm_inverse(const ArmGeometry& geometry,
   return q.unaryExpr([](double angle) { return wrap_angle(angle); });
 }
 
-std::optional<ArmJoints> six_joint_inverse(const ArmGeometry& geometry,
-                                           const Pose3& hand,
-                                           ArmBranch branch,
-                                           const ArmJoints& present) {
-  // At arm angle 0 the upper arm, the forearm and z0 lie in one plane, so theta_3 is 0 or 180
-  // degrees: the sign at the elbow decides.
-  for (const std::uint8_t elbow : {std::uint8_t{0}, ArmBranch::kElbowBack}) {
-    branch.bits = static_cast<std::uint8_t>((branch.bits & ~ArmBranch::kElbowBack) | elbow);
-    auto q = arm_inverse(geometry, hand, 0, branch, present);
-    if (q && std::abs((*q)[2]) < std::numbers::pi / 2) return q;
-  }
-  return std::nullopt;
-}
-
 std::optional<ArmSolution> best_arm_solution(const ArmGeometry& geometry,
                                              const Pose3& hand,
                                              const ArmJoints& present,

@@ -37,13 +37,6 @@ std::optional<ArmJoints> arm_inverse(const ArmGeometry& geometry,
                                      ArmBranch branch,
                                      const ArmJoints& present = ArmJoints::Zero());
 
-/// With theta_3 at 0, as if the arm had six joints, and the elbow low: the thesis' first step. The
-/// sign at the elbow follows; `branch` gives the other two.
-std::optional<ArmJoints> six_joint_inverse(const ArmGeometry& geometry,
-                                           const Pose3& hand,
-                                           ArmBranch branch,
-                                           const ArmJoints& present = ArmJoints::Zero());
-
 struct ArmSolution {
   ArmJoints q = ArmJoints::Zero();
   double psi = 0;  // [rad]

@@ -28,7 +28,6 @@ constexpr std::size_t kCells =
 constexpr ParameterInfo kGridMargin{.name = "certainty_grid.margin",
                                     .label = "Margin",
                                     .unit = "m",
-                                    .min = 0,
                                     .max = 0.5,
                                     .step = 0.01,
                                     .initial = 0.05,

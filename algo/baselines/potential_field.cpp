@@ -47,7 +47,6 @@ constexpr ParameterInfo kPush{
     .name = "potential_field.repulsion",
     .label = "Repulsion eta",
     .unit = "m2",
-    .min = 0.0,
     .max = 5,
     .step = 0.05,
     .initial = 0.5,

@@ -11,15 +11,12 @@ namespace {
 // [D] A post of six certain cells face-on balances the goal at sqrt(6 15 F_cr / F_ct) = 6.7 cells.
 constexpr ParameterInfo kRepulsion{.name = "vff.repulsion",
                                    .label = "Repulsion F_cr",
-                                   .unit = "",
-                                   .min = 0,
                                    .max = 5,
                                    .step = 0.05,
                                    .initial = 0.5,
                                    .help = "How strongly each certain cell pushes."};
 constexpr ParameterInfo kAttraction{.name = "vff.attraction",
                                     .label = "Attraction F_ct",
-                                    .unit = "",
                                     .min = 0.1,
                                     .max = 5,
                                     .step = 0.05,

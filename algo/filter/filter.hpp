@@ -29,8 +29,6 @@ std::optional<FilterKind> find_filter(std::string_view name);
 inline constexpr ParameterInfo kFilterHalfWidth{
     .name = "filter.half_width",
     .label = "Filter half width N",
-    .unit = "",
-    .min = 0.0,
     .max = 10.0,
     .step = 1.0,
     .initial = 1.0,

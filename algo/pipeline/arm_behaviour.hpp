@@ -22,7 +22,6 @@ namespace algo {
 inline constexpr ParameterInfo kArmSweeps{
     .name = "arm.sweeps",
     .label = "Sweeps of the arm's strip",
-    .unit = "",
     .min = 1,
     .max = 100,
     .step = 1,

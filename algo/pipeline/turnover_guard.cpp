@@ -217,7 +217,7 @@ double TurnoverGuard::eased(double wanted, const Odometry& odometry) {
     from = std::clamp(odometry.twist.v, std::min(sent_, wanted), std::max(sent_, wanted));
   }
   const double most = std::max(along_, kLeastRamp) * spec_.period;
-  sent_ = from + std::clamp(wanted - from, -most, most);
+  sent_ = towards(from, wanted, most);
   return sent_;
 }
 

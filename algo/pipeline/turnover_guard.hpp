@@ -21,7 +21,6 @@ namespace algo {
 inline constexpr ParameterInfo kTurnoverShare{
     .name = "turnover.share",
     .label = "Share of the turnover bound",
-    .unit = "",
     .min = 0.1,
     .max = 1.0,
     .step = 0.05,
@@ -40,8 +39,6 @@ inline constexpr ParameterInfo kTurnoverPreview{
 inline constexpr ParameterInfo kMassMargin{
     .name = "turnover.mass_margin",
     .label = "Room for a higher mass",
-    .unit = "",
-    .min = 0.0,
     .max = 0.5,
     .step = 0.05,
     .initial = 0.1,

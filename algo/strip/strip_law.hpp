@@ -14,8 +14,6 @@ namespace algo {
 inline constexpr ParameterInfo kContractionGain{
     .name = "strip.k_c",
     .label = "Contraction K_c",
-    .unit = "",
-    .min = 0.0,
     .max = 1.0,
     .step = 0.05,
     .initial = 0.8,
@@ -26,7 +24,6 @@ inline constexpr ParameterInfo kContractionGain{
 inline constexpr ParameterInfo kRepulsionGain{
     .name = "strip.k_r",
     .label = "Repulsion K_r",
-    .unit = "",
     .min = 0.05,
     .max = 1.0,
     .step = 0.05,
@@ -49,8 +46,6 @@ inline constexpr ParameterInfo kStripStep{
 inline constexpr ParameterInfo kViaBuffer{
     .name = "strip.via_buffer",
     .label = "Drive by the via buffer",
-    .unit = "",
-    .min = 0,
     .max = 2,
     .step = 1,
     .initial = 0,
@@ -63,7 +58,6 @@ inline constexpr ParameterInfo kDamping{
     .name = "strip.damping",
     .label = "Damping",
     .unit = "s",
-    .min = 0,
     .max = 1,
     .step = 0.05,
     .initial = 0,

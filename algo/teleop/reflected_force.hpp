@@ -19,8 +19,6 @@ constexpr double kFullStick = 10000;  // full deflection q, and full force F
 inline constexpr ParameterInfo kForceRamp{
     .name = "teleop.force_ramp",
     .label = "Force ramp",
-    .unit = "",
-    .min = 0.0,
     .max = 1.0,
     .step = 0.05,
     .initial = 0.2,
@@ -60,8 +58,6 @@ enum class ForwardForce : std::uint8_t {
 inline constexpr ParameterInfo kForwardForce{
     .name = "teleop.forward_force",
     .label = "Forward force",
-    .unit = "",
-    .min = 0,
     .max = 2,
     .step = 1,
     .initial = 0,

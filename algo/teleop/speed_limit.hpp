@@ -18,7 +18,6 @@ constexpr double kTeleopPeriod = 0.1;
 inline constexpr ParameterInfo kSparsenessFactor{
     .name = "teleop.gamma",
     .label = "Sparseness factor",
-    .unit = "",
     .min = 0.5,
     .max = 0.99,
     .step = 0.01,
@@ -27,7 +26,6 @@ inline constexpr ParameterInfo kSparsenessFactor{
 inline constexpr ParameterInfo kLeastSparseness{
     .name = "teleop.sprs_min",
     .label = "Least sparseness",
-    .unit = "",
     .min = 0.01,
     .max = 1.0,
     .step = 0.01,

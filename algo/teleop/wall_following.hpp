@@ -36,8 +36,6 @@ enum class WallLaw : std::uint8_t {
 inline constexpr ParameterInfo kWallLaw{
     .name = "teleop.wall_law",
     .label = "Wall law",
-    .unit = "",
-    .min = 0,
     .max = 1,
     .step = 1,
     .initial = 0,

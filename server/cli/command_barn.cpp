@@ -153,14 +153,8 @@ int execute(BarnCommand command) {
     return kReached;
   }
   refuse_nothing(worlds.size() * command.options.repeats, command.options.pool.shard, "runs");
-  barn::Result result;
-  {
-    ProgressLine progress;
-    command.options.pool.progress = [&](std::size_t done, std::size_t all) {
-      progress.show(fmt::format("{} of {} runs", done, all));
-    };
-    result = run_worlds(worlds, command.options);
-  }
+  const barn::Result result = with_progress(
+      command.options.pool, "runs", [&] { return run_worlds(worlds, command.options); });
   if (!command.rows.empty()) write_table(rows_table(result), command.rows);
   if (command.as_json) {
     fmt::print("{}\n", result_json(result).dump(2));

@@ -63,14 +63,8 @@ int execute_tours(const BuildingsCommand& command) {
   refuse_nothing(seeds_of(command.options).size() * options.odometries.size(),
                  command.options.pool.shard,
                  "tours");
-  std::vector<buildings::Tour> tours;
-  {
-    ProgressLine progress;
-    options.buildings.pool.progress = [&](std::size_t done, std::size_t all) {
-      progress.show(fmt::format("{} of {} tours", done, all));
-    };
-    tours = run_tours(options);
-  }
+  const std::vector<buildings::Tour> tours =
+      with_progress(options.buildings.pool, "tours", [&] { return run_tours(options); });
   if (!command.rows.empty()) write_table(legs_table(tours), command.rows);
   if (command.as_json) {
     fmt::print("{}\n", tours_json(tours).dump(2));
@@ -92,14 +86,8 @@ int execute(BuildingsCommand command) {
   }
   if (command.tour > 0) return execute_tours(command);
   refuse_nothing(seeds_of(command.options).size(), command.options.pool.shard, "buildings");
-  std::vector<buildings::BuildingRun> runs;
-  {
-    ProgressLine progress;
-    command.options.pool.progress = [&](std::size_t done, std::size_t all) {
-      progress.show(fmt::format("{} of {} buildings", done, all));
-    };
-    runs = run_buildings(command.options);
-  }
+  const std::vector<buildings::BuildingRun> runs = with_progress(
+      command.options.pool, "buildings", [&] { return run_buildings(command.options); });
   if (!command.rows.empty()) write_table(rows_table(runs), command.rows);
   if (command.as_json) {
     fmt::print("{}\n", to_json(runs).dump(2));

@@ -54,14 +54,9 @@ int execute(CrowdCommand command) {
     write_scenario(recording, robot.scenario, command);
     return kReached;
   }
-  crowd::CrowdStudy study;
-  {
-    ProgressLine progress;
-    command.pool.progress = [&](std::size_t done, std::size_t all) {
-      progress.show(fmt::format("{} of {} crossings", done, all));
-    };
-    study = crowd::study_crowd(recording, robot, command.pool);
-  }
+  const crowd::CrowdStudy study = with_progress(command.pool, "crossings", [&] {
+    return crowd::study_crowd(recording, robot, command.pool);
+  });
   if (!command.tracks.empty()) crowd::write_tracks(study, robot.scenario.period, command.tracks);
   fmt::print("{}\n", command.as_json ? to_json(study).dump(2) : to_text(study));
   return kReached;

@@ -93,14 +93,8 @@ int execute_operator(const SoakCommand& command) {
     return kReached;
   }
   refuse_nothing(options.worlds * options.robots.size(), options.pool.shard, "drives");
-  soak::OperatorStudy study;
-  {
-    ProgressLine progress;
-    options.pool.progress = [&](std::size_t done, std::size_t all) {
-      progress.show(fmt::format("{} of {} worlds", done, all));
-    };
-    study = run_operator(options);
-  }
+  const soak::OperatorStudy study =
+      with_progress(options.pool, "worlds", [&] { return run_operator(options); });
   if (!command.rows.empty()) write_table(operator_rows(study), command.rows);
   for (const soak::DrivenWorld& world : study.worlds) {
     for (std::size_t hand = 0; hand < soak::kHands.size(); ++hand) {
@@ -119,16 +113,6 @@ int execute_operator(const SoakCommand& command) {
   return soak::counted_contacts(study) > 0 ? kNotHeld : kReached;
 }
 
-/// `run` of `options`, which shows on a line how many of the `noun` are done.
-template <typename Options, typename Run>
-auto with_progress(Options options, std::string_view noun, Run run) {
-  ProgressLine progress;
-  options.pool.progress = [&](std::size_t done, std::size_t all) {
-    progress.show(fmt::format("{} of {} {}", done, all, noun));
-  };
-  return run(options);
-}
-
 int execute_slopes(const SoakCommand& command) {
   soak::SlopeOptions options{.first_seed = command.options.first_seed,
                              .pool = command.options.pool};
@@ -141,7 +125,7 @@ int execute_slopes(const SoakCommand& command) {
   }
   refuse_nothing(options.worlds, options.pool.shard, "worlds");
   const std::vector<soak::SlopeRow> rows =
-      with_progress(options, "worlds", [](const auto& wanted) { return run_slopes(wanted); });
+      with_progress(options.pool, "worlds", [&] { return run_slopes(options); });
   if (!command.rows.empty()) write_table(slope_rows(rows), command.rows);
   for (const soak::SlopeRow& row : rows) {
     if (!row.counts() || !row.guarded.overturned) continue;
@@ -164,7 +148,7 @@ int execute_courses(const SoakCommand& command) {
   }
   refuse_nothing(options.worlds, options.pool.shard, "courses");
   const std::vector<soak::CourseRow> rows =
-      with_progress(options, "courses", [](const auto& wanted) { return run_courses(wanted); });
+      with_progress(options.pool, "courses", [&] { return run_courses(options); });
   if (!command.rows.empty()) write_table(course_rows(rows), command.rows);
   bool fault = false;
   for (const soak::CourseRow& row : rows) {
@@ -188,14 +172,8 @@ int execute(SoakCommand command) {
     return kReached;
   }
   refuse_nothing(command.options.worlds, command.options.pool.shard, "worlds");
-  std::vector<soak::World> worlds;
-  {
-    ProgressLine progress;
-    command.options.pool.progress = [&](std::size_t done, std::size_t all) {
-      progress.show(fmt::format("{} of {} worlds", done, all));
-    };
-    worlds = run_worlds(command.options);
-  }
+  const std::vector<soak::World> worlds =
+      with_progress(command.options.pool, "worlds", [&] { return run_worlds(command.options); });
   if (!command.rows.empty()) write_table(rows_table(worlds), command.rows);
   print_worlds(worlds, command.list);
   print_table(worlds);

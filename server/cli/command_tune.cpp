@@ -82,15 +82,9 @@ int execute(TuneCommand command) {
   claim(document, command.out);
   std::stop_source stop;
   const InterruptWatch watch(stop);
-  std::optional<std::vector<tune::Attempt>> attempts;
   experiment::PoolOptions pool{.threads = command.workers, .stop = stop.get_token()};
-  {
-    ProgressLine line;
-    pool.progress = [&](std::size_t done, std::size_t all) {
-      line.show(fmt::format("{} of {} settings", done, all));
-    };
-    attempts = search(document, pool);
-  }
+  const std::optional<std::vector<tune::Attempt>> attempts =
+      with_progress(pool, "settings", [&] { return search(document, pool); });
   if (!attempts) {
     fmt::print(stderr, "tautline: The search was interrupted; it begins anew next time.\n");
     return kIncomplete;
@@ -105,7 +99,6 @@ int execute(TuneCommand command) {
   }
   const sweep::Plan plan =
       plan_from(document.test_of(best.point), command.file, command.controllers.catalogue());
-  pool.progress = {};
   const sweep::Rows rows = run_sweep(plan, out, pool);
   fmt::print("{} settings tried; the best:{}\n\nOn the test scenarios:\n",
              attempts->size(),

@@ -3,7 +3,11 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 
+#include <fmt/format.h>
+
+#include "server/cli/cli.hpp"
 #include "server/cli/options.hpp"
 #include "server/experiment/pool.hpp"
 
@@ -24,6 +28,18 @@ void add_first_seed_option(Command command,
                            const std::string& help = "The first seed (default 1)");
 /// --rows FILE: every run with every figure.
 void add_rows_option(Command command, std::string& file);
+/// The result of `run`, which uses `pool`, while a line shows how many of the `noun` are done.
+template <typename Run>
+auto with_progress(experiment::PoolOptions& pool, std::string_view noun, const Run& run) {
+  ProgressLine line;
+  pool.progress = [&](std::size_t done, std::size_t all) {
+    line.show(fmt::format("{} of {} {}", done, all, noun));
+  };
+  auto result = run();
+  pool.progress = {};
+  return result;
+}
+
 /// A check for the name of a judge.
 std::string refuse_unknown_judge(const std::string& name);
 

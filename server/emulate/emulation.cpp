@@ -63,72 +63,143 @@ struct Emulation::Psd {
 
 namespace {
 
-/// The verbs of a fault line.
-enum class Verb : std::uint8_t {
-  Truth,
-  Drop,
-  Flip,
-  Damage,
-  Silence,
-  Restart,
-  Unplug,
-  Nak,
-  Dazzle,
-  Cone,
-  Dirty,
-  Health,
-  Stop,
-  Bumper,
-  Battery,
-  Faults,
-  Runaway,
-  Gain,
-  Block,
-  Encoder,
-  Stick,
-  Jump,
-  Slow,
+/// Where a fault goes: a connection and what is behind it; null what is not.
+struct Target {
+  Connection& connection;
+  emulators::Device* line = nullptr;  // with a serial line
+  lms200::Emulator* scanner = nullptr;
+  emulators::Base* base = nullptr;
+  emulators::AnalogEmulator* card = nullptr;
+  drivers::psd::Emulator* psd = nullptr;
 };
-enum class Who : std::uint8_t { World, Any, Scanner, Base, Psd };
 
+/// `Line`: any device with a serial line.
+enum class Who : std::uint8_t { World, Any, Line, Scanner, Base, Psd };
+
+/// A verb of a fault line.
 struct VerbRow {
-  Verb verb = Verb::Truth;
   std::string_view word{};
   Who who = Who::Any;
   std::string_view help{};
+  void (*inject)(const Target& to, double value) = nullptr;
 };
 
-constexpr std::array<VerbRow, 23> kVerbs{{
-    {Verb::Truth, "truth", Who::World, "print the robot's pose and counts of scans as JSON"},
-    {Verb::Drop, "drop", Who::Any, "P: lose each byte with this probability"},
-    {Verb::Flip, "flip", Who::Any, "P: flip a bit of each byte with this probability"},
-    {Verb::Damage, "damage", Who::Any, "P: damage one byte of each telegram with this probability"},
-    {Verb::Silence, "silence", Who::Any, "SECONDS: send nothing"},
-    {Verb::Restart, "restart", Who::Any, "SECONDS: restart, which takes this long"},
-    {Verb::Unplug, "unplug", Who::Any, "SECONDS: remove the port for this long"},
-    {Verb::Nak, "nak", Who::Scanner, "N: answer NAK to the next N telegrams"},
-    {Verb::Dazzle, "dazzle", Who::Scanner, "on|off: blind all beams"},
-    {Verb::Cone, "cone", Who::Scanner, "DEGREES: blind this angle about the middle; 0: none"},
-    {Verb::Dirty, "dirty", Who::Scanner, "on|off: report a dirty window"},
-    {Verb::Health, "health", Who::Scanner, "BYTE: the last byte of all answers"},
-    {Verb::Stop, "stop", Who::Base, "on|off: press or release the stop button"},
-    {Verb::Bumper, "bumper", Who::Base, "on|off: press or release a bumper"},
-    {Verb::Battery, "battery", Who::Base, "VOLTS"},
-    {Verb::Faults, "faults", Who::Base, "BITS: fault flags the controller reports"},
-    {Verb::Runaway,
-     "runaway",
+template <double emulators::LineFaults::*Fault>
+void spoil(const Target& to, double value) {
+  emulators::LineFaults faults = to.line->faults();
+  faults.*Fault = value;
+  to.line->set_faults(faults);
+}
+
+void mute(const Target& to, double value) {
+  const double until = machine_time() + value;
+  if (to.line != nullptr) {
+    to.line->mute(until);
+  } else {
+    to.card->mute(until);
+  }
+}
+
+void restart(const Target& to, double value) {
+  if (to.scanner != nullptr) to.scanner->restart(machine_time(), value);
+  if (to.base != nullptr) to.base->restart(machine_time(), value);
+  if (to.psd != nullptr) to.psd->restart(machine_time(), value);
+}
+
+/// The one fault that is not injected under the device's lock.
+void unplug(const Target& to, double value) {
+  to.connection.unplug(value);
+}
+
+void dirty(const Target& to, double value) {
+  constexpr std::uint8_t kGood = 0x10;
+  constexpr std::uint8_t kPolluted = 0x92;
+  to.scanner->set_health(value != 0 ? kPolluted : kGood);
+}
+
+void stick(const Target& to, double value) {
+  constexpr double kAll = drivers::psd::kSensors + 1;
+  for (std::size_t i = 0; i < drivers::psd::kSensors; ++i) {
+    to.psd->stick(i, value == kAll || value == static_cast<double>(i + 1));
+  }
+}
+
+using emulators::LineFaults;
+using T = const Target&;
+
+constexpr std::string_view kTruth = "truth";
+constexpr auto kVerbs = std::to_array<VerbRow>({
+    {kTruth, Who::World, "print the robot's pose and counts of scans as JSON"},
+    {"drop", Who::Line, "P: lose each byte with this probability", spoil<&LineFaults::drop>},
+    {"flip",
+     Who::Line,
+     "P: flip a bit of each byte with this probability",
+     spoil<&LineFaults::flip>},
+    {"damage",
+     Who::Line,
+     "P: damage one byte of each telegram with this probability",
+     spoil<&LineFaults::damage>},
+    {"silence", Who::Any, "SECONDS: send nothing", mute},
+    {"restart", Who::Any, "SECONDS: restart, which takes this long", restart},
+    {"unplug", Who::Any, "SECONDS: remove the port for this long", unplug},
+    {"nak",
+     Who::Scanner,
+     "N: answer NAK to the next N telegrams",
+     [](T to, double value) { to.scanner->refuse_next(static_cast<unsigned>(value)); }},
+    {"dazzle",
+     Who::Scanner,
+     "on|off: blind all beams",
+     [](T to, double value) { to.scanner->dazzle(value != 0); }},
+    {"cone",
+     Who::Scanner,
+     "DEGREES: blind this angle about the middle; 0: none",
+     [](T to, double value) {
+       to.scanner->dazzle(value > 0, value * algo::units::kRadiansPerDegree);
+     }},
+    {"dirty", Who::Scanner, "on|off: report a dirty window", dirty},
+    {"health",
+     Who::Scanner,
+     "BYTE: the last byte of all answers",
+     [](T to, double value) { to.scanner->set_health(static_cast<std::uint8_t>(value)); }},
+    {"stop",
      Who::Base,
-     "SPEED: while powered, both wheels turn at this speed [m/s]; 0: none"},
-    {Verb::Gain, "gain", Who::Base, "N: the wheels turn N times as fast as commanded"},
-    {Verb::Block, "block", Who::Base, "on|off: the left wheel cannot turn"},
-    {Verb::Encoder, "encoder", Who::Base, "on|off: connect or disconnect the left wheel's encoder"},
-    {Verb::Stick,
-     "stick",
+     "on|off: press or release the stop button",
+     [](T to, double value) { to.base->press_stop_button(value != 0); }},
+    {"bumper",
+     Who::Base,
+     "on|off: press or release a bumper",
+     [](T to, double value) { to.base->press_bumper(value != 0); }},
+    {"battery", Who::Base, "VOLTS", [](T to, double value) { to.base->set_battery(value); }},
+    {"faults",
+     Who::Base,
+     "BITS: fault flags the controller reports",
+     [](T to, double value) { to.base->set_faults_reported(static_cast<std::uint16_t>(value)); }},
+    {"runaway",
+     Who::Base,
+     "SPEED: while powered, both wheels turn at this speed [m/s]; 0: none",
+     [](T to, double value) { to.base->trouble.runaway = value; }},
+    {"gain",
+     Who::Base,
+     "N: the wheels turn N times as fast as commanded",
+     [](T to, double value) { to.base->trouble.gain = value; }},
+    {"block",
+     Who::Base,
+     "on|off: the left wheel cannot turn",
+     [](T to, double value) { to.base->trouble.blocked = value != 0; }},
+    {"encoder",
+     Who::Base,
+     "on|off: connect or disconnect the left wheel's encoder",
+     [](T to, double value) { to.base->trouble.encoder_dead = value == 0; }},
+    {"stick", Who::Psd, "N: the count of floor sensor N stands still; 5: all; 0: none", stick},
+    {"jump",
      Who::Psd,
-     "N: the count of floor sensor N stands still; 5: all; 0: none"},
-    {Verb::Jump, "jump", Who::Psd, "SECONDS: move the clock of the floor sensors' adapter"},
-    {Verb::Slow, "slow", Who::Psd, "N: the floor sensors' adapter sends N times as seldom"},
-}};
+     "SECONDS: move the clock of the floor sensors' adapter",
+     [](T to, double value) { to.psd->jump(value); }},
+    {"slow",
+     Who::Psd,
+     "N: the floor sensors' adapter sends N times as seldom",
+     [](T to, double value) { to.psd->slow(std::max(1.0, value)); }},
+});
 
 const VerbRow& verb_of(const std::string& word) {
   for (const VerbRow& row : kVerbs) {
@@ -148,142 +219,23 @@ double value_of(const std::string& text, const VerbRow& row) {
   return value;
 }
 
-/// Injects a fault that any device can have; false for any other `verb`.
-bool inject(Verb verb, double value, Connection& connection, emulators::Device& device) {
-  if (verb == Verb::Unplug) {
-    connection.unplug(value);
-    return true;
-  }
-  const auto held = connection.lock();
-  emulators::LineFaults faults = device.faults();
-  switch (verb) {
-    case Verb::Drop:
-      faults.drop = value;
-      break;
-    case Verb::Flip:
-      faults.flip = value;
-      break;
-    case Verb::Damage:
-      faults.damage = value;
-      break;
-    case Verb::Silence:
-      device.mute(machine_time() + value);
-      return true;
-    default:
-      return false;
-  }
-  device.set_faults(faults);
-  return true;
+/// True if devices of kind `who` have the fault of `row`.
+bool applies(const VerbRow& row, Who who) {
+  return row.who == Who::Any || row.who == Who::Line || row.who == who;
 }
 
-void inject_scanner(Verb verb, double value, Connection& connection, lms200::Emulator& device) {
-  constexpr std::uint8_t kGood = 0x10;
-  constexpr std::uint8_t kPolluted = 0x92;
-  if (inject(verb, value, connection, device)) return;
-  const auto held = connection.lock();
-  switch (verb) {
-    case Verb::Restart:
-      device.restart(machine_time(), value);
-      break;
-    case Verb::Nak:
-      device.refuse_next(static_cast<unsigned>(value));
-      break;
-    case Verb::Dazzle:
-      device.dazzle(value != 0);
-      break;
-    case Verb::Cone:
-      device.dazzle(value > 0, value * algo::units::kRadiansPerDegree);
-      break;
-    case Verb::Dirty:
-      device.set_health(value != 0 ? kPolluted : kGood);
-      break;
-    default:
-      device.set_health(static_cast<std::uint8_t>(value));
+void inject(const VerbRow& row, double value, const Target& to) {
+  if (row.who == Who::Line && to.line == nullptr) {
+    throw std::invalid_argument(
+        fmt::format("'{}' needs a serial line; an acquisition card has none.", row.word));
   }
-}
-
-void inject_wheels(Verb verb, double value, emulators::Base& device) {
-  switch (verb) {
-    case Verb::Restart:
-      device.restart(machine_time(), value);
-      break;
-    case Verb::Stop:
-      device.press_stop_button(value != 0);
-      break;
-    case Verb::Bumper:
-      device.press_bumper(value != 0);
-      break;
-    case Verb::Battery:
-      device.set_battery(value);
-      break;
-    case Verb::Runaway:
-      device.trouble.runaway = value;
-      break;
-    case Verb::Gain:
-      device.trouble.gain = value;
-      break;
-    case Verb::Block:
-      device.trouble.blocked = value != 0;
-      break;
-    case Verb::Encoder:
-      device.trouble.encoder_dead = value == 0;
-      break;
-    default:
-      device.set_faults_reported(static_cast<std::uint16_t>(value));
+  if (row.inject == unplug) {
+    unplug(to, value);
+  } else {
+    const auto held = to.connection.lock();
+    row.inject(to, value);
   }
-}
-
-/// As inject(), for the acquisition card of a base without a serial line.
-bool inject_card(const VerbRow& row,
-                 double value,
-                 Connection& connection,
-                 emulators::AnalogEmulator& device) {
-  switch (row.verb) {
-    case Verb::Unplug:
-      connection.unplug(value);
-      return true;
-    case Verb::Silence: {
-      const auto held = connection.lock();
-      device.mute(machine_time() + value);
-      return true;
-    }
-    case Verb::Drop:
-    case Verb::Flip:
-    case Verb::Damage:
-      throw std::invalid_argument(
-          fmt::format("'{}' needs a serial line; an acquisition card has none.", row.word));
-    default:
-      return false;
-  }
-}
-
-/// `base`: an Emulation::Base.
-template <class Base>
-void inject_base(const VerbRow& row, double value, Base& base) {
-  Connection& connection = *base.connection;
-  const bool done = base.line != nullptr ? inject(row.verb, value, connection, *base.line)
-                                         : inject_card(row, value, connection, *base.card);
-  if (!done) {
-    const auto held = connection.lock();
-    inject_wheels(row.verb, value, *base.device);
-  }
-  connection.wake();
-}
-
-void inject_psd(const VerbRow& row,
-                double value,
-                Connection& connection,
-                drivers::psd::Emulator& device) {
-  if (inject(row.verb, value, connection, device)) return;
-  const auto held = connection.lock();
-  if (row.verb == Verb::Restart) device.restart(machine_time(), value);
-  if (row.verb == Verb::Jump) device.jump(value);
-  if (row.verb == Verb::Slow) device.slow(std::max(1.0, value));
-  if (row.verb != Verb::Stick) return;
-  constexpr double kAll = drivers::psd::kSensors + 1;
-  for (std::size_t i = 0; i < drivers::psd::kSensors; ++i) {
-    device.stick(i, value == kAll || value == static_cast<double>(i + 1));
-  }
+  to.connection.wake();
 }
 
 /// The device for `row` when the line names none.
@@ -406,13 +358,13 @@ std::string Emulation::command(std::string_view line) {
   }
   words >> value;
   const VerbRow& row = verb_of(word);
-  if (row.verb == Verb::Truth) return truth();
+  if (row.word == kTruth) return truth();
   if (device.empty()) device = only(row, scanners_.size(), base_ != nullptr);
   const double number = value_of(value, row);
   record_.event(machine_time(), line);
-  if (device == "psd" && psd_ && (row.who == Who::Any || row.who == Who::Psd)) {
-    inject_psd(row, number, psd_->thread, psd_->device);
-    psd_->thread.wake();
+  if (device == "psd" && psd_ && applies(row, Who::Psd)) {
+    drivers::psd::Emulator& psd = psd_->device;
+    inject(row, number, {.connection = psd_->thread, .line = &psd, .psd = &psd});
     return "";
   }
   if (device == "psd") {
@@ -421,19 +373,24 @@ std::string Emulation::command(std::string_view line) {
                                     : "There are no floor sensors here.");
   }
   if (device == "base") {
-    if (!base_ || row.who == Who::Scanner || row.who == Who::Psd) {
+    if (!base_ || !applies(row, Who::Base)) {
       throw std::invalid_argument(fmt::format("'{}' does not apply to this base.", row.word));
     }
-    inject_base(row, number, *base_);
+    inject(row,
+           number,
+           {.connection = *base_->connection,
+            .line = base_->line,
+            .base = base_->device.get(),
+            .card = base_->card});
     return "";
   }
   for (const auto& scanner : scanners_) {
     if (scanner->thread.name() != device) continue;
-    if (row.who == Who::Base || row.who == Who::Psd) {
+    if (!applies(row, Who::Scanner)) {
       throw std::invalid_argument(fmt::format("'{}' does not apply to a scanner.", row.word));
     }
-    inject_scanner(row.verb, number, scanner->thread, scanner->device);
-    scanner->thread.wake();
+    lms200::Emulator& laser = scanner->device;
+    inject(row, number, {.connection = scanner->thread, .line = &laser, .scanner = &laser});
     return "";
   }
   throw std::invalid_argument("There is no device '" + device + "' here.");

@@ -10,6 +10,18 @@
 namespace server {
 namespace {
 
+using algo::Encoders;
+using algo::Explanation;
+using algo::FloorRanges;
+using algo::GroundTruth;
+using algo::Inclinometer;
+using algo::Joystick;
+using algo::Observation;
+using algo::Odometry;
+using algo::Pose2;
+using algo::Tilt;
+using algo::Twist2;
+using algo::YawGyro;
 using T = algo::Telemetry;
 using Out = std::string;
 
@@ -47,203 +59,136 @@ void put_requests(Out& out, const T& t) {
   }
 }
 
-/// Calls `put` with the newest stick that was applied in the tick.
-template <typename Put>
-void put_stick(Out& out, const T& t, const Put& put) {
-  const algo::Joystick* newest = nullptr;
+/// The newest stick that was applied in the tick; null if there was none.
+const Joystick* newest_stick(const T& t) {
+  const Joystick* newest = nullptr;
   for (const algo::Request& request : t.requests) {
-    if (const auto* stick = std::get_if<algo::Joystick>(&request)) newest = stick;
+    if (const auto* stick = std::get_if<Joystick>(&request)) newest = stick;
   }
-  if (newest != nullptr) put(out, *newest);
+  return newest;
+}
+template <double Joystick::*Value>
+void put_stick(Out& out, const T& t) {
+  if (const Joystick* stick = newest_stick(t)) put_number(out, stick->*Value);
+}
+void put_stick_mode(Out& out, const T& t) {
+  if (const Joystick* stick = newest_stick(t)) put_text(out, name(stick->mode));
+}
+void put_stick_driver(Out& out, const T& t) {
+  if (const Joystick* stick = newest_stick(t)) put_text(out, stick->driver.view());
 }
 
-/// Appends a number of the simulator's truth, at the frame's precision.
-template <typename Get>
-void put_truth(Out& out, const T& t, const Get& get) {
-  if (t.ground_truth) put_float(out, get(*t.ground_truth));
+template <int Axis>
+void put_goal(Out& out, const T& t) {
+  if (t.goal) put_float(out, t.goal->position_W[Axis]);
 }
-template <typename Get>
-void put_tilt(Out& out, const T& t, const Get& get) {
-  if (t.ground_truth && t.ground_truth->tilt) put_float(out, get(*t.ground_truth->tilt));
+void put_goal_heading(Out& out, const T& t) {
+  if (t.goal && t.goal->heading) put_float(out, *t.goal->heading);
 }
 
+// The simulator's truth, at the frame's precision.
+template <double Pose2::*Part>
+void put_pose(Out& out, const T& t) {
+  if (t.ground_truth) put_float(out, t.ground_truth->pose.*Part);
+}
+template <double GroundTruth::*Value>
+void put_truth(Out& out, const T& t) {
+  if (t.ground_truth) put_float(out, (*t.ground_truth).*Value);
+}
+template <bool GroundTruth::*Flag>
+void put_truth(Out& out, const T& t) {
+  if (t.ground_truth) put_count(out, (*t.ground_truth).*Flag ? 1 : 0);
+}
+template <double Tilt::*Value>
+void put_tilt(Out& out, const T& t) {
+  if (t.ground_truth && t.ground_truth->tilt) put_float(out, (*t.ground_truth->tilt).*Value);
+}
+
+/// Appends a value of a sense that the robot may lack.
+template <auto Sense, auto Value>
+void put_sense(Out& out, const T& t) {
+  if (t.observation.*Sense) put_number(out, (*(t.observation.*Sense)).*Value);
+}
+template <std::uint32_t Encoders::*Wheel>
+void put_encoder(Out& out, const T& t) {
+  if (t.observation.encoders) put_count(out, (*t.observation.encoders).*Wheel);
+}
+void put_line_stamp(Out& out, const T& t) {
+  if (t.observation.line.fresh) put_number(out, t.observation.line.stamp);
+}
+void put_line_points(Out& out, const T& t) {
+  if (t.observation.line.fresh) put_count(out, t.observation.line.pixels.size());
+}
 /// Appends a distance to the floor; "inf": nothing within range, as in the columns of sonars.
-void put_floor(Out& out, const T& t, double algo::FloorRanges::*which) {
+template <double FloorRanges::*Which>
+void put_floor(Out& out, const T& t) {
   if (!t.observation.floor) return;
-  const double range = (*t.observation.floor).*which;
+  const double range = (*t.observation.floor).*Which;
   put_number(out, std::isnan(range) ? std::numeric_limits<double>::infinity() : range);
 }
 
+template <double Odometry::*Value>
+void put_odometry(Out& out, const T& t) {
+  put_number(out, t.observation.odometry.*Value);
+}
+template <double Twist2::*Part>
+void put_twist(Out& out, const T& t) {
+  put_number(out, t.observation.odometry.twist.*Part);
+}
+/// Appends the newest words in the tick that made them.
+template <auto Words>
+void put_words(Out& out, const T& t) {
+  if (t.words_fresh) put_text(out, t.words.*Words);
+}
+
 constexpr auto kColumns = std::to_array<FrameColumn>({
-    {"odometry.stamp", "s", [](Out& o, const T& t) { put_number(o, t.observation.odometry.stamp); }},
-    {"odometry.v",
-     "m/s",
-     [](Out& o, const T& t) { put_number(o, t.observation.odometry.twist.v); }},
-    {"odometry.omega",
-     "rad/s",
-     [](Out& o, const T& t) { put_number(o, t.observation.odometry.twist.omega); }},
+    {"odometry.stamp", "s", put_odometry<&Odometry::stamp>},
+    {"odometry.v", "m/s", put_twist<&Twist2::v>},
+    {"odometry.omega", "rad/s", put_twist<&Twist2::omega>},
     {"mission", "", [](Out& o, const T& t) { put_text(o, algo::name(t.mission)); }},
     {"halt", "", [](Out& o, const T& t) { put_text(o, algo::name(t.observation.halt)); }},
     {"limit", "", [](Out& o, const T& t) { put_text(o, t.limit.name.view()); }},
     {"waits", "", [](Out& o, const T& t) { put_count(o, t.output.waits ? 1 : 0); }},
     {"state", "", [](Out& o, const T& t) { put_count(o, t.output.state); }},
-    {"goal.x",
-     "m",
-     [](Out& o, const T& t) {
-       if (t.goal) put_float(o, t.goal->position_W.x());
-     }},
-    {"goal.y",
-     "m",
-     [](Out& o, const T& t) {
-       if (t.goal) put_float(o, t.goal->position_W.y());
-     }},
-    {"goal.heading",
-     "rad",
-     [](Out& o, const T& t) {
-       if (t.goal && t.goal->heading) put_float(o, *t.goal->heading);
-     }},
+    {"goal.x", "m", put_goal<0>},
+    {"goal.y", "m", put_goal<1>},
+    {"goal.heading", "rad", put_goal_heading},
     {"goals_ahead", "", [](Out& o, const T& t) { put_count(o, t.goals_ahead.size()); }},
-    {"truth.x",
-     "m",
-     [](Out& o, const T& t) { put_truth(o, t, [](const auto& g) { return g.pose.x; }); }},
-    {"truth.y",
-     "m",
-     [](Out& o, const T& t) { put_truth(o, t, [](const auto& g) { return g.pose.y; }); }},
-    {"truth.heading",
-     "rad",
-     [](Out& o, const T& t) { put_truth(o, t, [](const auto& g) { return g.pose.heading; }); }},
-    {"truth.obstacle_distance",
-     "m",
-     [](Out& o, const T& t) { put_truth(o, t, [](const auto& g) { return g.obstacle_distance; }); }},
-    {"truth.clearance",
-     "m",
-     [](Out& o, const T& t) { put_truth(o, t, [](const auto& g) { return g.clearance; }); }},
-    {"truth.collided",
-     "",
-     [](Out& o, const T& t) {
-       if (t.ground_truth) put_count(o, t.ground_truth->collided ? 1 : 0);
-     }},
-    {"truth.overturned",
-     "",
-     [](Out& o, const T& t) {
-       if (t.ground_truth) put_count(o, t.ground_truth->overturned ? 1 : 0);
-     }},
-    {"truth.fallen",
-     "",
-     [](Out& o, const T& t) {
-       if (t.ground_truth) put_count(o, t.ground_truth->fallen ? 1 : 0);
-     }},
-    {"truth.z", "m", [](Out& o, const T& t) { put_tilt(o, t, [](const auto& g) { return g.z; }); }},
-    {"truth.roll",
-     "rad",
-     [](Out& o, const T& t) { put_tilt(o, t, [](const auto& g) { return g.roll; }); }},
-    {"truth.pitch",
-     "rad",
-     [](Out& o, const T& t) { put_tilt(o, t, [](const auto& g) { return g.pitch; }); }},
-    {"gyro.stamp",
-     "s",
-     [](Out& o, const T& t) {
-       if (t.observation.gyro) put_number(o, t.observation.gyro->stamp);
-     }},
-    {"gyro.rate",
-     "rad/s",
-     [](Out& o, const T& t) {
-       if (t.observation.gyro) put_number(o, t.observation.gyro->rate);
-     }},
-    {"inclinometer.stamp",
-     "s",
-     [](Out& o, const T& t) {
-       if (t.observation.inclinometer) put_number(o, t.observation.inclinometer->stamp);
-     }},
-    {"inclinometer.roll",
-     "rad",
-     [](Out& o, const T& t) {
-       if (t.observation.inclinometer) put_number(o, t.observation.inclinometer->roll);
-     }},
-    {"inclinometer.pitch",
-     "rad",
-     [](Out& o, const T& t) {
-       if (t.observation.inclinometer) put_number(o, t.observation.inclinometer->pitch);
-     }},
-    {"line.stamp",
-     "s",
-     [](Out& o, const T& t) {
-       if (t.observation.line.fresh) put_number(o, t.observation.line.stamp);
-     }},
-    {"line.points",
-     "",
-     [](Out& o, const T& t) {
-       if (t.observation.line.fresh) put_count(o, t.observation.line.pixels.size());
-     }},
-    {"floor.stamp",
-     "s",
-     [](Out& o, const T& t) {
-       if (t.observation.floor) put_number(o, t.observation.floor->stamp);
-     }},
-    {"floor.far_left",
-     "m",
-     [](Out& o, const T& t) { put_floor(o, t, &algo::FloorRanges::far_left); }},
-    {"floor.far_right",
-     "m",
-     [](Out& o, const T& t) { put_floor(o, t, &algo::FloorRanges::far_right); }},
-    {"floor.near_left",
-     "m",
-     [](Out& o, const T& t) { put_floor(o, t, &algo::FloorRanges::near_left); }},
-    {"floor.near_right",
-     "m",
-     [](Out& o, const T& t) { put_floor(o, t, &algo::FloorRanges::near_right); }},
-    {"encoders.stamp",
-     "s",
-     [](Out& o, const T& t) {
-       if (t.observation.encoders) put_number(o, t.observation.encoders->stamp);
-     }},
-    {"encoders.left",
-     "",
-     [](Out& o, const T& t) {
-       if (t.observation.encoders) put_count(o, t.observation.encoders->left);
-     }},
-    {"encoders.right",
-     "",
-     [](Out& o, const T& t) {
-       if (t.observation.encoders) put_count(o, t.observation.encoders->right);
-     }},
+    {"truth.x", "m", put_pose<&Pose2::x>},
+    {"truth.y", "m", put_pose<&Pose2::y>},
+    {"truth.heading", "rad", put_pose<&Pose2::heading>},
+    {"truth.obstacle_distance", "m", put_truth<&GroundTruth::obstacle_distance>},
+    {"truth.clearance", "m", put_truth<&GroundTruth::clearance>},
+    {"truth.collided", "", put_truth<&GroundTruth::collided>},
+    {"truth.overturned", "", put_truth<&GroundTruth::overturned>},
+    {"truth.fallen", "", put_truth<&GroundTruth::fallen>},
+    {"truth.z", "m", put_tilt<&Tilt::z>},
+    {"truth.roll", "rad", put_tilt<&Tilt::roll>},
+    {"truth.pitch", "rad", put_tilt<&Tilt::pitch>},
+    {"gyro.stamp", "s", put_sense<&Observation::gyro, &YawGyro::stamp>},
+    {"gyro.rate", "rad/s", put_sense<&Observation::gyro, &YawGyro::rate>},
+    {"inclinometer.stamp", "s", put_sense<&Observation::inclinometer, &Inclinometer::stamp>},
+    {"inclinometer.roll", "rad", put_sense<&Observation::inclinometer, &Inclinometer::roll>},
+    {"inclinometer.pitch", "rad", put_sense<&Observation::inclinometer, &Inclinometer::pitch>},
+    {"line.stamp", "s", put_line_stamp},
+    {"line.points", "", put_line_points},
+    {"floor.stamp", "s", put_sense<&Observation::floor, &FloorRanges::stamp>},
+    {"floor.far_left", "m", put_floor<&FloorRanges::far_left>},
+    {"floor.far_right", "m", put_floor<&FloorRanges::far_right>},
+    {"floor.near_left", "m", put_floor<&FloorRanges::near_left>},
+    {"floor.near_right", "m", put_floor<&FloorRanges::near_right>},
+    {"encoders.stamp", "s", put_sense<&Observation::encoders, &Encoders::stamp>},
+    {"encoders.left", "", put_encoder<&Encoders::left>},
+    {"encoders.right", "", put_encoder<&Encoders::right>},
     {"scans", "", [](Out& o, const T& t) { put_count(o, t.observation.scans.size()); }},
     {"requests", "", put_requests},
-    {"stick.forward",
-     "",
-     [](Out& o, const T& t) {
-       put_stick(o, t, [](Out& out, const algo::Joystick& s) { put_number(out, s.forward); });
-     }},
-    {"stick.turn",
-     "",
-     [](Out& o, const T& t) {
-       put_stick(o, t, [](Out& out, const algo::Joystick& s) { put_number(out, s.turn); });
-     }},
-    {"stick.mode",
-     "",
-     [](Out& o, const T& t) {
-       put_stick(o, t, [](Out& out, const algo::Joystick& s) { put_text(out, name(s.mode)); });
-     }},
-    {"stick.round_trip",
-     "s",
-     [](Out& o, const T& t) {
-       put_stick(o, t, [](Out& out, const algo::Joystick& s) { put_number(out, s.round_trip); });
-     }},
-    {"stick.driver",
-     "",
-     [](Out& o, const T& t) {
-       put_stick(o, t, [](Out& out, const algo::Joystick& s) { put_text(out, s.driver.view()); });
-     }},
-    {"what",
-     "",
-     [](Out& o, const T& t) {
-       if (t.words_fresh) put_text(o, t.words.what);
-     }},
-    {"why",
-     "",
-     [](Out& o, const T& t) {
-       if (t.words_fresh) put_text(o, t.words.why);
-     }},
+    {"stick.forward", "", put_stick<&Joystick::forward>},
+    {"stick.turn", "", put_stick<&Joystick::turn>},
+    {"stick.mode", "", put_stick_mode},
+    {"stick.round_trip", "s", put_stick<&Joystick::round_trip>},
+    {"stick.driver", "", put_stick_driver},
+    {"what", "", put_words<&Explanation::what>},
+    {"why", "", put_words<&Explanation::why>},
 });
 
 }  // namespace

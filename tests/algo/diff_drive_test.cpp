@@ -83,17 +83,6 @@ TEST(DiffDrive, CountsOfAWholeTurnOnTheSpot) {
   EXPECT_NEAR(out.heading, 0.5, 1e-9);
 }
 
-TEST(DiffDrive, SaturationKeepsTheCurvature) {
-  const WheelSpeeds wanted{4, 10};
-  const WheelSpeeds got = algo::saturate(wanted, 5);
-  EXPECT_EQ(got, (WheelSpeeds{2, 5}));
-  const Twist2 before = algo::forward_kinematics(kGeometry, wanted);
-  const Twist2 after = algo::forward_kinematics(kGeometry, got);
-  EXPECT_NEAR(before.omega / before.v, after.omega / after.v, 1e-12);
-  EXPECT_EQ(algo::saturate({-3, 2}, 5), (WheelSpeeds{-3, 2}));
-  EXPECT_EQ(algo::saturate({-10, 2}, 5), (WheelSpeeds{-5, 1}));
-}
-
 TEST(DiffDrive, InvalidNumbersAreRefused) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double bad : {0.0, -0.1, nan}) {
@@ -102,7 +91,6 @@ TEST(DiffDrive, InvalidNumbersAreRefused) {
     EXPECT_THROW(algo::inverse_kinematics({bad, 0.25}, {}), std::invalid_argument);
     EXPECT_THROW(algo::integrate_counts({0.1, bad}, 1000, {}, {}), std::invalid_argument);
     EXPECT_THROW(algo::integrate_counts(kGeometry, bad, {}, {}), std::invalid_argument);
-    EXPECT_THROW(algo::saturate({}, bad), std::invalid_argument);
   }
   EXPECT_THROW(algo::integrate_arc({}, {}, -0.1), std::invalid_argument);
   EXPECT_THROW(algo::integrate_arc({}, {}, nan), std::invalid_argument);

@@ -38,7 +38,7 @@ TEST(DriverAllocations, MotorControllersAllocateNothing) {
   roboteq::LineReader reader;
   const std::size_t before = allocations::count();
   EXPECT_TRUE(p2os::decode_state(body, base));
-  EXPECT_GT(p2os::wheel_velocities(0.2, 0.2, 1).size(), 0U);
+  EXPECT_GT(p2os::velocity({.v = 0.2, .omega = 0}, {1, 1}).velocity.size(), 0U);
   EXPECT_GT(roboteq::drive(1, 2).size(), 0U);
   reader.feed(lines, [&](std::string_view line) {
     roboteq::update(controller, roboteq::parse_reply(line));

@@ -33,8 +33,8 @@ Configuration configuration(std::uint8_t threshold_mv,
                             bool millimetres) {
   Bytes block = hex("00 00 00 00 00 00 00 00 00 02 02 21x00 02 00");
   block[2] = threshold_mv;
+  block[4] = availability;
   Configuration result{block};
-  result.set_availability(availability);
   result.set_measuring_mode(mode);
   result.set_millimetres(millimetres);
   return result;
@@ -49,8 +49,6 @@ std::vector<PrintedRow> requests() {
   return {
       {status_command(), "02 00 01 00 31 15 12"},
       {type_command(), "02 00 01 00 3A 1E 12"},
-      {error_command(), "02 00 01 00 32 16 12"},
-      {reset_command(), "02 00 01 00 10 34 12"},
       {read_configuration_command(), "02 00 01 00 74 50 12"},
       {rate_command(Rate::Baud9600), "02 00 02 00 20 42 52 08"},
       {rate_command(Rate::Baud19200), "02 00 02 00 20 41 51 08"},
@@ -60,18 +58,12 @@ std::vector<PrintedRow> requests() {
       {mode_command(Mode::OnRequest), "02 00 02 00 20 25 35 08"},
       {mode_command(Mode::PartialScans), "02 00 02 00 20 2A 3A 08"},
       {mode_command(Mode::Continuous, 1), "02 01 02 00 20 24 24 00"},
-      {values_command(Wanted::All), "02 00 02 00 30 01 31 18"},
       {installation_command(), "02 00 0A 00 20 00 53 49 43 4B 5F 4C 4D 53 BE C5"},
       {variant_command({100, 100}), "02 00 05 00 3B 64 00 64 00 1D 0F"},
       {variant_command({100, 50}), "02 00 05 00 3B 64 00 32 00 B1 59"},
       {variant_command({100, 25}), "02 00 05 00 3B 64 00 19 00 E7 72"},
       {variant_command({180, 100}), "02 00 05 00 3B B4 00 64 00 97 49"},
       {variant_command({180, 50}), "02 00 05 00 3B B4 00 32 00 3B 1F"},
-      {continuous_range_command({27, 299}), "02 00 06 00 20 27 1B 00 2B 01 FF FE"},
-      {range_command({1, 361}), "02 00 05 00 37 01 00 69 01 EB 75"},
-      {mean_command(2), "02 00 02 00 36 02 3E 1E"},
-      {start_up_rate_command(StartUpRate::Baud9600), "02 00 02 00 66 00 9C 4E"},
-      {start_up_rate_command(StartUpRate::KeepPresent), "02 00 02 00 66 01 9D 4E"},
       {write_configuration_command(configuration(0x46, 0, 0, true)),
        "02 00 23 00 77 00 00 46 00 00 00 01 00 00 02 02 21x00 02 00 CD 67"},
       {write_configuration_command(configuration(0x46, 2, 6, true)),
@@ -101,24 +93,10 @@ TEST(Lms200Protocol, FramesOfTheTestPasswordFitTheirCrc) {
   EXPECT_EQ(kept.frames, std::vector<Bytes>{printed});
 }
 
-TEST(Lms200Protocol, RequestsWithoutAPrintedExampleHaveTheirParametersInOrder) {
-  const auto payload = [](const Command& command) {
-    return bytes_of(telegram_of(command.view()).payload);
-  };
-  EXPECT_EQ(payload(continuous_means_command(5)), hex("20 26 05"));
-  EXPECT_EQ(payload(continuous_mean_range_command(5, {2, 300})), hex("20 28 05 02 00 2C 01"));
-  EXPECT_EQ(payload(continuous_fields_command({2, 300})), hex("20 29 02 00 2C 01"));
-  EXPECT_EQ(payload(mean_range_command(5, {2, 300})), hex("3F 05 02 00 2C 01"));
-  EXPECT_EQ(payload(read_second_configuration_command()), hex("7B"));
-  EXPECT_EQ(payload(write_second_configuration_command(Bytes(84, 7))).size(), 85U);
-  EXPECT_EQ(write_second_configuration_command(Bytes(84, 7)).size(), 91U);
-}
-
 TEST(Lms200Protocol, UnsupportedSettingsGiveNoTelegram) {
   EXPECT_EQ(variant_command({180, 25}).size(), 0U);
   EXPECT_EQ(variant_command({90, 100}).size(), 0U);
   EXPECT_EQ(installation_command("short").size(), 0U);
-  EXPECT_EQ(write_second_configuration_command(Bytes(83)).size(), 0U);
 }
 
 TEST(Lms200Protocol, AnswersEncodeAsPrinted) {
@@ -186,11 +164,6 @@ TEST(Lms200Protocol, ConfigurationAnswers) {
   EXPECT_FALSE(configuration_answer(telegram_of(framed(0x80, hex("F4 00 00 70 00 10")))));
 }
 
-TEST(Lms200Protocol, StartUpRateAnswer) {
-  EXPECT_EQ(start_up_rate_answer(telegram_of(framed(0x80, hex("E6 01 01 10")))),
-            (StartUpRateAnswer{.done = true, .now = StartUpRate::KeepPresent}));
-}
-
 TEST(Lms200Protocol, StatusFieldsAreReadByTheirIndices) {
   Bytes payload(154, 0);
   const auto word = [&payload](std::size_t at, unsigned value) {
@@ -199,45 +172,21 @@ TEST(Lms200Protocol, StatusFieldsAreReadByTheirIndices) {
   };
   payload[0] = 0xB1;
   std::copy_n("V02.30 ", 7, payload.begin() + 1);
-  payload[8] = 0x25;
-  word(19, 900);
-  word(33, 907);
-  word(67, 148);
   payload[102] = 6;
   word(107, 180);
   word(109, 50);
-  word(116, 0x8019);
-  payload[120] = 1;
   payload[122] = 1;
-  payload[123] = 1;
   payload[153] = 0x10;
   const Bytes frame = framed(0x81, payload);
   const auto status = device_status(telegram_of(frame));
   ASSERT_TRUE(status);
   EXPECT_EQ(status->software, "V02.30 ");
-  EXPECT_EQ(status->mode, 0x25);
   EXPECT_FALSE(status->faulty);
-  EXPECT_EQ(status->pollution[0], 900);
-  EXPECT_EQ(status->pollution[7], 907);
-  EXPECT_EQ(status->motor_microseconds, 148);
   EXPECT_EQ(status->measuring_mode, 6);
   EXPECT_EQ(status->variant, (Variant{180, 50}));
-  EXPECT_EQ(status->baud, 38400U);
-  EXPECT_EQ(status->address, 1);
   EXPECT_TRUE(status->in_millimetres);
-  EXPECT_TRUE(status->laser_on);
   payload.pop_back();
   EXPECT_FALSE(device_status(telegram_of(framed(0x81, payload))));
-}
-
-TEST(Lms200Protocol, ErrorsAsSentences) {
-  EXPECT_EQ(error_count(Printed("02 80 02 00 B2 10 3F 13").telegram()), 0U);
-  const Bytes two = framed(0x80, hex("B2 03 1D 82 11 12"));
-  ASSERT_EQ(error_count(telegram_of(two)), 2U);
-  EXPECT_EQ(error_text(error_at(telegram_of(two), 0)), "error 29: the motor's speed is wrong");
-  EXPECT_EQ(error_text(error_at(telegram_of(two), 1)),
-            "warning 17: the window is dirty (no longer present)");
-  EXPECT_FALSE(error_count(telegram_of(framed(0x80, hex("B2 03 12")))));
 }
 
 TEST(Lms200Protocol, HealthTellsWhetherToDrive) {

@@ -22,11 +22,8 @@ void decode(const Telegram& telegram) {
   refusal_text(telegram);
   type_text(telegram);
   variant_answer(telegram);
-  start_up_rate_answer(telegram);
   configuration_answer(telegram);
   device_status(telegram);
-  const std::size_t errors = error_count(telegram).value_or(0);
-  for (std::size_t i = 0; i < errors; ++i) error_text(error_at(telegram, i));
   health_text(Health(telegram.status()));
 
   const auto values = measured_values(telegram);

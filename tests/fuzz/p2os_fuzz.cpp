@@ -19,8 +19,6 @@ void decode(ByteView body, Odometer& odometer, Handshake& handshake) {
     if (!std::isfinite(odometer.pose().x) || state.sonar_count > State::kSonars) std::abort();
   }
   handshake.receive(body);
-  encoder_counts(body);
-  gyro_counts(body);
 }
 
 std::uint64_t read(ByteView bytes, std::size_t piece) {

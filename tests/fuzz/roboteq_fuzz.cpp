@@ -16,6 +16,5 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (roboteq::update(state, reply) && reply.kind != roboteq::Reply::Kind::Values) std::abort();
   });
   roboteq::fault_text(state.faults.value_or(0));
-  roboteq::status_text(state.status.value_or(0));
   return 0;
 }

@@ -12,6 +12,13 @@
 
 namespace reference {
 
+/// The pose of an obstacle's centre: half its height above the floor.
+inline btTransform transform_of(const algo::Obstacle& obstacle) {
+  const algo::Pose2& pose = obstacle.pose_W;
+  return btTransform(btQuaternion(btVector3(0, 0, 1), pose.heading),
+                     btVector3(pose.x, pose.y, (obstacle.bottom + obstacle.height) / 2));
+}
+
 /// A room as Bullet collision objects.
 class BulletRoom {
  public:
@@ -22,7 +29,7 @@ class BulletRoom {
       shapes_.push_back(sim::obstacle_shape(obstacle, 0.001));
       objects_.push_back(sim::make_bullet<btCollisionObject>());
       objects_.back()->setCollisionShape(shapes_.back().get());
-      objects_.back()->setWorldTransform(sim::obstacle_transform(obstacle));
+      objects_.back()->setWorldTransform(transform_of(obstacle));
       world_.addCollisionObject(objects_.back().get());
     }
   }
@@ -34,7 +41,7 @@ class BulletRoom {
 
   /// Moves the obstacle with number `index` to the pose of `obstacle`.
   void move(std::size_t index, const algo::Obstacle& obstacle) {
-    objects_[index]->setWorldTransform(sim::obstacle_transform(obstacle));
+    objects_[index]->setWorldTransform(transform_of(obstacle));
     world_.updateSingleAabb(objects_[index].get());
   }
 

@@ -13,7 +13,7 @@
 #include "algo/pipeline/pipeline.hpp"
 #include "algo/terrain/ground_survey.hpp"
 #include "sim/floor_sensors.hpp"
-#include "sim/solid_caster.hpp"
+#include "sim/obstacle_set.hpp"
 
 namespace ground_drive {
 
@@ -56,7 +56,7 @@ struct Drive {
 
   void add(const algo::Obstacle& obstacle) {
     sensors.add(obstacle);
-    solids.add(obstacle);
+    ground.add(obstacle);
   }
 
   void start(const std::string& controller = "go_to_goal") {
@@ -68,7 +68,7 @@ struct Drive {
   }
 
   double ground_under(std::size_t contact) const {
-    return solids.ground_at(to_parent(pose, contacts[contact]));
+    return ground.ground_at(to_parent(pose, contacts[contact]));
   }
 
   /// Sets R on the axle and on the higher of the casters; notes the edges that were met.
@@ -154,7 +154,7 @@ struct Drive {
 
   algo::RobotSpec spec{};
   sim::FloorSensorModel sensors;
-  sim::SolidCaster solids{};
+  sim::ObstacleSet ground{};
   std::unique_ptr<algo::Pipeline> pipeline{};
   algo::Telemetry t{};
   Pose2 pose{};

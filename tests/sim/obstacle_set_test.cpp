@@ -76,6 +76,23 @@ TEST(ObstacleSet, AgreesWithPointsSampledAlongTheOutline) {
   }
 }
 
+TEST(ObstacleSet, TheGroundIsTheTopOfARampOrTheBottomOfATrench) {
+  for (const double slope : {-20_deg, -10_deg, 5_deg, 10_deg, 20_deg}) {
+    const double tan = std::tan(slope);
+    // From x = 1 to 3, down from a height if the slope falls.
+    const double low = tan < 0 ? -2 * tan : 0;
+    algo::Obstacle ramp = at(2, 0, 0, algo::Ramp{2, 2, low});
+    ramp.height = low + 2 * tan;
+    ObstacleSet set;
+    set.add(ramp);
+    EXPECT_NEAR(set.ground_at({1.5, 0}), low + tan / 2, 1e-12);
+  }
+  ObstacleSet narrow;  // from 0.99 to 1.01
+  narrow.add(at(1, 0, 0, algo::Trench{0.02, 2, 0.1}));
+  EXPECT_NEAR(narrow.ground_at({1, 0}), -0.1, 1e-12);
+  EXPECT_EQ(narrow.ground_at({1.02, 0}), 0);
+}
+
 TEST(ObstacleSet, ADiscIsItsRadiusNearer) {
   const algo::Obstacle post = at(1, 0, 0, algo::Cylinder{0.1});
   EXPECT_NEAR(clearance(post, {0, 0, 1}, {.radius = 0.35}), 1 - 0.1 - 0.35, 1e-12);

@@ -69,7 +69,6 @@ TEST(SolidCaster, ARampIsMetWhereItsPlaneIs) {
     const double ahead = 0.3 / (1 + tan);
     EXPECT_NEAR(hit->range, ahead / kDiagonal, 1e-12) << degrees;
     EXPECT_NEAR((hit->normal_W - Vec3(-tan, 0, 1).normalized()).norm(), 0, 1e-12);
-    EXPECT_NEAR(caster.ground_at({1.5, 0}), low + tan / 2, 1e-12);
   }
 }
 
@@ -81,8 +80,6 @@ TEST(SolidCaster, ATrenchHasABottomAndSides) {
   ASSERT_TRUE(side);
   EXPECT_NEAR(side->range, 0.21 / kDiagonal, 1e-12);
   EXPECT_NEAR((side->normal_W - Vec3(-1, 0, 0)).norm(), 0, 1e-12);
-  EXPECT_NEAR(narrow.ground_at({1, 0}), -0.1, 1e-12);
-  EXPECT_EQ(narrow.ground_at({1.02, 0}), 0);
 }
 
 TEST(SolidCaster, ALevelRayAgreesWithThePlanarCaster) {
@@ -115,14 +112,15 @@ TEST(SolidCaster, ALevelRayAgreesWithThePlanarCaster) {
 TEST(SolidCaster, ObstaclesCanBeMovedAndRemoved) {
   SolidCaster caster = solids({ramp(1.5, 1, 0.1, 0.1)});
   EXPECT_TRUE(caster.has_ground());
-  EXPECT_NEAR(caster.ground_at({1.5, 0}), 0.1, 1e-12);
+  const auto height = [&](double x) { return 1 - range(caster, {x, 0, 1}, {0, 0, -1}); };
+  EXPECT_NEAR(height(1.5), 0.1, 1e-12);
   caster.move(1, {5, 0, 0});
-  EXPECT_EQ(caster.ground_at({1.5, 0}), 0);
-  EXPECT_NEAR(caster.ground_at({5, 0}), 0.1, 1e-12);
+  EXPECT_EQ(height(1.5), 0);
+  EXPECT_NEAR(height(5), 0.1, 1e-12);
   caster.remove(1);
   caster.remove(1);
   EXPECT_FALSE(caster.has_ground());
-  EXPECT_EQ(caster.ground_at({5, 0}), 0);
+  EXPECT_EQ(height(5), 0);
 }
 
 }  // namespace

@@ -239,7 +239,6 @@ export interface RunItem {
   parameters: Record<string, number>;
   ticks: number;
   time: number;     // [s] at which it reached its outcome; of the newest tick while it has none
-  end_time: number; // [s] of the newest tick
   later: { outcome: string; reason: string; time: number } | null; // how a live run went on
   metrics: Metrics | null;
   group?: RunGroup;

@@ -42,6 +42,13 @@ export function distance(a: Point, b: Point): number {
   return Math.hypot(a.x - b.x, a.y - b.y);
 }
 
+/** From `p` to the segment from `a` to `b`. */
+export function to_segment(p: Point, a: Point, b: Point): number {
+  const [dx, dy] = [b.x - a.x, b.y - a.y];
+  const share = Math.max(0, Math.min(1, ((p.x - a.x) * dx + (p.y - a.y) * dy) / (dx * dx + dy * dy || 1)));
+  return distance(p, { x: a.x + share * dx, y: a.y + share * dy });
+}
+
 /** A rectangle of W; empty if min > max. */
 export interface Bounds { min_x: number; min_y: number; max_x: number; max_y: number }
 

@@ -5,12 +5,11 @@
 #include <string_view>
 
 #include "algo/driving.hpp"
+#include "algo/metrics.hpp"
 #include "server/experiment/judge.hpp"
 
 namespace server::experiment::judges {
 namespace {
-
-constexpr double kResample = 0.050;  // [m] between kept positions, as for the turning
 
 constexpr Column kPathColumns[] = {
     {"body_infringed_s", Aggregate::Largest, 1},  // an obstacle within d_safe of the hull
@@ -37,8 +36,10 @@ class Path final : public Judge {
     const double clearance = t.ground_truth->obstacle_distance - radius_;
     body_depth_ = std::max(body_depth_, safety_distance_ - clearance);
     // A tick counts the time since the last one; at the start there is none.
-    if (kept_W_ && clearance < safety_distance_) body_infringed_ += period_;
-    follow(t.ground_truth->pose.position());
+    if (path_.begun() && clearance < safety_distance_) body_infringed_ += period_;
+    if (const auto bend = path_.add(t.ground_truth->pose.position())) {
+      bending_ += bend->change * bend->change / bend->length;
+    }
     follow_strip(t.output);
   }
 
@@ -52,23 +53,6 @@ class Path final : public Judge {
   }
 
  private:
-  void follow(const algo::Vec2& position_W) {
-    if (!kept_W_) {
-      kept_W_ = position_W;
-      return;
-    }
-    const algo::Vec2 segment = position_W - *kept_W_;
-    const double length = segment.norm();
-    if (length < kResample) return;
-    const double direction = std::atan2(segment.y(), segment.x());
-    if (direction_) {
-      const double change = algo::wrap_angle(direction - *direction_);
-      bending_ += change * change / length;
-    }
-    direction_ = direction;
-    kept_W_ = position_W;
-  }
-
   void follow_strip(const algo::ControlOutput& output) {
     const auto measure = [&](std::string_view name) { return output.measure(name).value_or(0); };
     largest_internal_ = std::max(largest_internal_, measure("strip.internal"));
@@ -87,9 +71,8 @@ class Path final : public Judge {
   double body_infringed_ = 0;   // [s]
   double body_depth_ = 0;       // [m]
   double bending_ = 0;          // [rad2/m]
-  std::optional<algo::Vec2> kept_W_{};
-  std::optional<double> direction_{};  // [rad] of the last kept segment
-  double shares_ = 0;                  // count
+  algo::ResampledPath path_{};
+  double shares_ = 0;  // count
   double share_mean_ = 0;
   double squares_ = 0;           // sum of squared deviations (Welford)
   double largest_internal_ = 0;  // [m]

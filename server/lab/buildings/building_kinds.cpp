@@ -59,7 +59,7 @@ void join_all(const FloorPlan& plan, sim::Random& random, Join&& join) {
       way.pop_back();
       continue;
     }
-    const CellPlace c = next[below(random, next.size())];
+    const CellPlace c = next[random.below(next.size())];
     joined[index(c)] = true;
     join(way.back(), c);
     way.push_back(c);
@@ -83,7 +83,7 @@ void each_wall(const FloorPlan& plan, Visit&& visit) {
 /// A pitch of corridors: their width is a door's, or more.
 double pitch_of(double door_width, sim::Random& random) {
   const std::array pitches{door_width + kWall, 1.4, 1.8, 2.2};
-  return pitches.at(below(random, pitches.size()));
+  return pitches.at(random.below(pitches.size()));
 }
 
 int cells_of(double length, double pitch) {
@@ -161,7 +161,7 @@ FloorPlan office(double door_width, sim::Random& random) {
 }
 
 FloorPlan hall(double door_width, sim::Random& random) {
-  const auto halls = static_cast<int>(1 + below(random, 3));
+  const auto halls = static_cast<int>(1 + random.below(3));
   std::vector<double> xs{0};
   for (int k = 0; k < halls; ++k) {
     xs.push_back(xs.back() + length_of(random, kLeast, (kMost - 2) / halls));
@@ -177,7 +177,7 @@ FloorPlan dead_ends(double door_width, sim::Random& random) {
   constexpr int kLane = 1;
   constexpr int kBeyond = 2;
   const double width = std::max(length_of(random, 1.2, 2.4), door_width + kDoorRoom + 2 * kWall);
-  const auto lanes = static_cast<int>(4 + below(random, 9));
+  const auto lanes = static_cast<int>(4 + random.below(9));
   std::vector<double> xs{0};
   for (int k = 0; k < lanes; ++k) xs.push_back(xs.back() + width);
   const double lobby = length_of(random, 1.8, 4);
@@ -185,7 +185,7 @@ FloorPlan dead_ends(double door_width, sim::Random& random) {
   FloorPlan plan(std::move(xs),
                  {0, lobby, lobby + lane, lobby + lane + length_of(random, 1.8, 4)},
                  door_width);
-  const auto through = static_cast<int>(below(random, static_cast<std::size_t>(lanes)));
+  const auto through = static_cast<int>(random.below(static_cast<std::size_t>(lanes)));
   for (int k = 0; k < lanes; ++k) {
     if (k > 0) plan.open({k - 1, kLobby}, {k, kLobby});
     if (k > 0) plan.open({k - 1, kBeyond}, {k, kBeyond});
@@ -234,10 +234,6 @@ Kind kind_named(std::string_view name) {
         "No kind of building is called '{}'; there are {}.", name, fmt::join(kNames, ", ")));
   }
   return kKinds.at(static_cast<std::size_t>(found - kNames.begin()));
-}
-
-std::size_t below(sim::Random& random, std::size_t count) {
-  return static_cast<std::size_t>(random.uniform() * static_cast<double>(count));
 }
 
 FloorPlan draw_plan(Kind kind, double door_width, sim::Random& random) {

@@ -21,9 +21,6 @@ std::string_view name(Kind kind);
 /// Throws std::invalid_argument that lists the names.
 Kind kind_named(std::string_view name);
 
-/// A whole number below `count`.
-std::size_t below(sim::Random& random, std::size_t count);
-
 /// A plan without furniture.
 FloorPlan draw_plan(Kind kind, double door_width, sim::Random& random);
 

@@ -85,8 +85,8 @@ class Builder {
     Vec2 p_W{0, 0};
     for (int k = 0; k < kPlaces; ++k) {
       const auto column =
-          static_cast<int>(below(random_, static_cast<std::size_t>(plan_.columns())));
-      const auto row = static_cast<int>(below(random_, static_cast<std::size_t>(plan_.rows())));
+          static_cast<int>(random_.below(static_cast<std::size_t>(plan_.columns())));
+      const auto row = static_cast<int>(random_.below(static_cast<std::size_t>(plan_.rows())));
       const Vec2 size = plan_.high({column, row}) - plan_.low({column, row});
       const double u = random_.uniform();
       const double v = random_.uniform();
@@ -102,7 +102,7 @@ class Builder {
   Vec2 place_start() {
     const GridOracle oracle(obstacles());
     Vec2 start_W = anywhere(oracle, kRoomAtStart);
-    const auto quarter = static_cast<double>(below(random_, 4));
+    const auto quarter = static_cast<double>(random_.below(4));
     double heading = random_.uniform(-std::numbers::pi, std::numbers::pi);
     building_.nose_on = random_.uniform() < 0.15;
     if (building_.nose_on) {

@@ -7,8 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include "server/lab/buildings/building_kinds.hpp"
-
 namespace server::buildings {
 namespace {
 
@@ -28,7 +26,7 @@ struct Thing {
 };
 
 Thing draw_thing(sim::Random& random) {
-  const std::size_t kind = below(random, 5);
+  const std::size_t kind = random.below(5);
   const double a = random.uniform();
   const double b = random.uniform();
   switch (kind) {
@@ -57,7 +55,7 @@ class Room {
   /// A pose for a thing of `size`; its width is `x` if it is not turned.
   std::optional<algo::Pose2> place(const Vec2& size, sim::Random& random) {
     for (int k = 0; k < kThingTries; ++k) {
-      const std::size_t side = below(random, 8);  // 0 to 3: at that wall
+      const std::size_t side = random.below(8);  // 0 to 3: at that wall
       const double heading = side < 4 ? static_cast<double>(side) * std::numbers::pi / 2
                                       : random.uniform(-std::numbers::pi, std::numbers::pi);
       const double u = random.uniform();

@@ -160,7 +160,7 @@ Vec2 TourGoals::far(const Vec2& robot_W) {
 /// In a pen or a shut cell, or outside: there the oracle's grid ends after a metre.
 Vec2 TourGoals::shut_in() {
   const bool outside = random_.uniform() < 0.5 || shut_W_.empty();
-  const std::size_t which = below(random_, outside ? 2 : shut_W_.size());
+  const std::size_t which = random_.below(outside ? 2 : shut_W_.size());
   if (!outside) return shut_W_[which];
   const Vec2 middle_W = (low_W_ + high_W_) / 2;
   return which == 0 ? Vec2(low_W_.x() - kBeyondWalls, middle_W.y())
@@ -169,7 +169,7 @@ Vec2 TourGoals::shut_in() {
 
 /// A point of a thing.
 Vec2 TourGoals::inside() {
-  const algo::Obstacle& thing = obstacles_[below(random_, obstacles_.size())];
+  const algo::Obstacle& thing = obstacles_[random_.below(obstacles_.size())];
   Vec2 half(0, 0);
   if (const auto* const box = std::get_if<algo::Box>(&thing.shape)) {
     half = Vec2(box->length, box->width) / 2;

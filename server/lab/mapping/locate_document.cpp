@@ -177,7 +177,7 @@ std::vector<experiment::DrawnPath> paths_of(const std::vector<Run>& runs,
 
 void write_markdown(const LocateStudy& study, const std::filesystem::path& file) {
   const std::filesystem::path pictures = reproduce::folder_beside(file, "pictures/maps");
-  std::string section(kLocateMarks.begin);
+  std::string section;
   const auto add_picture = [&](const std::string& name,
                                const std::string& title,
                                const Drawing& drawing,
@@ -205,7 +205,6 @@ void write_markdown(const LocateStudy& study, const std::filesystem::path& file)
                   return std::string(run.planned ? "planned by sight and map" : "by sight");
                 }));
   }
-  section += kLocateMarks.end;
   reproduce::put_marked(file, kLocateMarks, section);
 }
 

@@ -156,9 +156,8 @@ std::string to_text(const MapStudy& study) {
 
 void write_markdown(const std::vector<MapStudy>& studies, const std::filesystem::path& file) {
   const std::filesystem::path pictures = reproduce::folder_beside(file, "pictures/mapping");
-  std::string section(kMarks.begin);
+  std::string section;
   for (const MapStudy& study : studies) add_log(study, pictures, section);
-  section += kMarks.end;
   reproduce::put_marked(file, kMarks, section);
 }
 

@@ -144,8 +144,8 @@ nlohmann::json to_json(const ArmStudy& study) {
 }
 
 std::string to_markdown(const ArmStudy& study, const std::string& pictures) {
-  std::string out{kArmMarks.begin};
-  out += fmt::format("## A post half way\n\n{}", experiment::to_markdown(strips_table(study)));
+  std::string out =
+      fmt::format("## A post half way\n\n{}", experiment::to_markdown(strips_table(study)));
   out += fmt::format("![Both strips from above]({}/{})\n", pictures, kArmPicture);
   out += fmt::format("\n## Courses\n\n{}", experiment::to_markdown(drives_table(study)));
   out += fmt::format("## At random\n\n{}", experiment::to_markdown(trials_table(study)));
@@ -154,7 +154,6 @@ std::string to_markdown(const ArmStudy& study, const std::string& pictures) {
                      experiment::to_markdown(reasons_table(study.reach)));
   out += fmt::format("## Findings\n\n{}", experiment::to_markdown(arm_findings_table(study)));
   while (out.ends_with("\n\n")) out.pop_back();
-  out += kArmMarks.end;
   return out;
 }
 

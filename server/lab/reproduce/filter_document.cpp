@@ -6,7 +6,6 @@
 #include "server/experiment/table.hpp"
 #include "server/lab/reproduce/filter_study.hpp"
 #include "server/lab/reproduce/marked.hpp"
-#include "server/run/text_file.hpp"
 
 namespace server {
 namespace {
@@ -202,8 +201,7 @@ std::string to_text(const FilterStudy& study) {
 }
 
 std::string to_markdown(const FilterStudy& study, const std::string& pictures) {
-  std::string out(kMarks.begin);
-  out += "## Chapter 3: the pseudomedian filter\n\n";
+  std::string out = "## Chapter 3: the pseudomedian filter\n\n";
   out +=
       "The effect of the filter on a scan, compared with the median, our `lulu`, the mean and the "
       "midrange. Scenes, noise and the height of the spikes are our choice where the thesis gives "
@@ -252,14 +250,11 @@ std::string to_markdown(const FilterStudy& study, const std::string& pictures) {
     out += fmt::format("\n**{}**\n\n{}", recording_title(each), to_markdown(recording_table(each)));
   }
   out += fmt::format("\n### Cost\n\n{}\n\n{}", kAboutCost, to_markdown(cost_table(study)));
-  out += kMarks.end;
   return out;
 }
 
 void write_markdown(const FilterStudy& study, const std::filesystem::path& file) {
-  const std::filesystem::path pictures = reproduce::folder_beside(file, "pictures/reproduction");
-  for (const Picture& picture : draw(study)) write_text(pictures / picture.file, picture.svg);
-  reproduce::put_marked(file, kMarks, to_markdown(study, "pictures/reproduction"));
+  reproduce::write_study(file, kMarks, study, draw(study));
 }
 
 }  // namespace server

@@ -3,8 +3,6 @@
 
 #include <stdexcept>
 
-#include "server/run/text_file.hpp"
-
 namespace server::reproduce {
 
 bool replace_marked(std::string& text, const Marks& marks, const std::string& section) {
@@ -18,9 +16,10 @@ bool replace_marked(std::string& text, const Marks& marks, const std::string& se
 
 void put_marked(const std::filesystem::path& file, const Marks& marks, const std::string& section) {
   std::string text = std::filesystem::exists(file) ? read_text(file) : "";
-  if (!replace_marked(text, marks, section)) {
+  const std::string whole = std::string(marks.begin) + section + std::string(marks.end);
+  if (!replace_marked(text, marks, whole)) {
     if (!text.empty()) text += text.ends_with('\n') ? "\n" : "\n\n";
-    text += section;
+    text += whole;
   }
   write_text(file, text);
 }

@@ -5,7 +5,6 @@
 #include "server/experiment/table.hpp"
 #include "server/lab/reproduce/marked.hpp"
 #include "server/lab/reproduce/masuda_study.hpp"
-#include "server/run/text_file.hpp"
 
 namespace server::reproduce {
 namespace {
@@ -153,8 +152,7 @@ json to_json(const MasudaStudy& study) {
 }
 
 std::string to_markdown(const MasudaStudy& study, const std::string& pictures) {
-  std::string out{kMasudaMarks.begin};
-  out +=
+  std::string out =
       "## Tables\n\nThe paper's values stand before ours. *As printed* takes the printed rules, "
       "D[N/2] of the window, and means of all trials.\n";
   for (const TableTitle& title : kTableTitles) {
@@ -171,14 +169,11 @@ std::string to_markdown(const MasudaStudy& study, const std::string& pictures) {
       fmt::format("\n![Fig. 10: a trench met obliquely]({}/{})\n", pictures, kMasudaTrenchPicture);
   out += fmt::format("\n## Claims\n\n{}", experiment::to_markdown(claims_table(study)));
   while (out.ends_with("\n\n")) out.pop_back();
-  out += kMasudaMarks.end;
   return out;
 }
 
 void write_markdown(const MasudaStudy& study, const std::filesystem::path& file) {
-  const std::filesystem::path pictures = folder_beside(file, "pictures/reproduction");
-  for (const Picture& picture : draw(study)) write_text(pictures / picture.file, picture.svg);
-  put_marked(file, kMasudaMarks, to_markdown(study, "pictures/reproduction"));
+  write_study(file, kMasudaMarks, study, draw(study));
 }
 
 }  // namespace server::reproduce

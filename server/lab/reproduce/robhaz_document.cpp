@@ -10,7 +10,6 @@
 #include "server/experiment/table.hpp"
 #include "server/lab/reproduce/marked.hpp"
 #include "server/lab/reproduce/robhaz_study.hpp"
-#include "server/run/text_file.hpp"
 
 namespace server::reproduce {
 namespace {
@@ -207,8 +206,7 @@ json to_json(const RobhazStudy& study) {
 }
 
 std::string to_markdown(const RobhazStudy& study, const std::string& pictures) {
-  std::string out{kRobhazMarks.begin};
-  out += fmt::format(
+  std::string out = fmt::format(
       "## Findings\n\n{}\n\n{}\nThe readings: ", kRule, to_markdown(verdicts_table(study)));
   for (const CourseRun& run : study.runs) {
     out += fmt::format(
@@ -229,14 +227,11 @@ std::string to_markdown(const RobhazStudy& study, const std::string& pictures) {
                      to_markdown(script_table(study.course)));
   out += "\n" + to_markdown(study.turnover, pictures);
   while (out.ends_with("\n\n")) out.pop_back();
-  out += kRobhazMarks.end;
   return out;
 }
 
 void write_markdown(const RobhazStudy& study, const std::filesystem::path& file) {
-  const std::filesystem::path pictures = folder_beside(file, "pictures/reproduction");
-  for (const Picture& picture : draw(study)) write_text(pictures / picture.file, picture.svg);
-  put_marked(file, kRobhazMarks, to_markdown(study, "pictures/reproduction"));
+  write_study(file, kRobhazMarks, study, draw(study));
 }
 
 }  // namespace server::reproduce

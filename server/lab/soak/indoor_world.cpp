@@ -32,9 +32,6 @@ class Builder {
       : scenario_(scenario), random_(seed, kIndoorPurpose) {}
 
   sim::Random& random() { return random_; }
-  std::size_t below(std::size_t count) {
-    return static_cast<std::size_t>(random_.uniform() * static_cast<double>(count));
-  }
 
   void add(const algo::Pose2& pose_W, const algo::Shape& shape) {
     algo::Obstacle obstacle;
@@ -88,7 +85,7 @@ class Builder {
     const double size = random_.uniform(least, most);
     const double other = random_.uniform(least, most);
     const double heading = random_.uniform(-std::numbers::pi, std::numbers::pi);
-    const std::size_t kind = below(3);
+    const std::size_t kind = random_.below(3);
     const auto at_W = place(std::hypot(size, other) / 2 + wanted_room);
     if (!at_W) return;
     const algo::Pose2 pose_W{at_W->x(), at_W->y(), heading};
@@ -206,9 +203,9 @@ sim::Scenario indoor_world(std::uint64_t seed, double radius) {
   add_outer_walls(build);
   if (kind == Indoors::Corridors) add_corridors(build);
   if (kind == Indoors::Doors) add_rooms(build);
-  const std::size_t things = kind == Indoors::Clutter ? 10 + build.below(11)
-                             : kind == Indoors::Doors ? 4 + build.below(5)
-                             : kind == Indoors::Hall  ? 2 + build.below(4)
+  const std::size_t things = kind == Indoors::Clutter ? 10 + build.random().below(11)
+                             : kind == Indoors::Doors ? 4 + build.random().below(5)
+                             : kind == Indoors::Hall  ? 2 + build.random().below(4)
                                                       : 0;
   for (std::size_t k = 0; k < things; ++k) {
     if (kind == Indoors::Hall) {
@@ -221,7 +218,7 @@ sim::Scenario indoor_world(std::uint64_t seed, double radius) {
   for (double room = radius + kStartRoom; !start_W; room *= 0.9) start_W = build.place(room);
   scenario.start = {
       start_W->x(), start_W->y(), build.random().uniform(-std::numbers::pi, std::numbers::pi)};
-  const std::size_t people = build.below(4);
+  const std::size_t people = build.random().below(4);
   for (std::size_t k = 0; k < people; ++k) build.person(*start_W);
   return scenario;
 }

@@ -20,13 +20,9 @@ constexpr double kClear = 0.05;  // [m] clearance of the hull at the start
 constexpr double kHull = 0.35;   // [m] hull radius of the Silvermate
 constexpr std::uint64_t kPurpose = 0x5041;
 
-std::size_t below(sim::Random& random, std::size_t count) {
-  return static_cast<std::size_t>(random.uniform() * static_cast<double>(count));
-}
-
 /// A convex polygon: points in order on an ellipse.
 algo::Polygon polygon(sim::Random& random) {
-  const std::size_t corners = 3 + below(random, 4);
+  const std::size_t corners = 3 + random.below(4);
   const double length = random.uniform(0.15, 0.8);
   const double width = random.uniform(0.15, 0.8);
   algo::Polygon shape;
@@ -40,7 +36,7 @@ algo::Polygon polygon(sim::Random& random) {
 }
 
 algo::Shape shape(sim::Random& random) {
-  switch (below(random, 4)) {
+  switch (random.below(4)) {
     case 0:
       return algo::Cylinder{random.uniform(0.05, 0.6)};
     case 1:
@@ -79,8 +75,8 @@ sim::Scenario random_world(std::uint64_t seed, const std::string& controller) {
   scenario.physics = sim::PhysicsKind::Kinematic;
   scenario.drive.ramps = true;
   scenario.controller = controller;
-  if (below(random, 3) > 0) close_room(scenario);
-  const std::size_t count = 3 + below(random, 22);
+  if (random.below(3) > 0) close_room(scenario);
+  const std::size_t count = 3 + random.below(22);
   for (std::size_t i = 0; i < count; ++i) {
     algo::Obstacle obstacle;
     obstacle.shape = shape(random);

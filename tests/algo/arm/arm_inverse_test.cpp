@@ -84,19 +84,6 @@ TEST(ArmInverse, KeepsTheArmAngle) {
   }
 }
 
-TEST(ArmInverse, TheSixJointSolutionTurnsNoUpperArm) {
-  RandomArm arm;
-  for (int n = 0; n < 1000; ++n) {
-    const auto hand = arm_frames(arm.geometry, arm.joints()).hand();
-    for (std::uint8_t bits = 0; bits < ArmBranch::kCount; ++bits) {
-      const auto q = six_joint_inverse(arm.geometry, hand, {bits});
-      ASSERT_TRUE(q);
-      EXPECT_NEAR((*q)[2], 0, 1e-9);
-      EXPECT_LT(apart(arm_frames(arm.geometry, *q).hand(), hand), 1e-9);
-    }
-  }
-}
-
 TEST(ArmInverse, AStretchedArmKeepsTheJointsThatAreFree) {
   const ArmGeometry geometry;
   ArmJoints q = ArmJoints::Zero();

@@ -4,6 +4,7 @@
 
 #include "tests/drivers/emulators/talk.hpp"
 #include "tests/drivers/hex.hpp"
+#include "tests/drivers/lms200_telegrams.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -213,9 +214,10 @@ TEST(Lms200Emulator, ReportsItsStatus) {
   ASSERT_TRUE(status);
   EXPECT_EQ(status->software, "V02.30 ");
   EXPECT_EQ(status->variant, options.variant);
-  EXPECT_EQ(status->baud, 9600U);
-  EXPECT_EQ(status->address, 3);
-  EXPECT_EQ(status->motor_microseconds, 148);
+  const ByteView payload = telegram_of(got[0]).payload;
+  EXPECT_EQ(word_at(payload, 116), 0x8067);  // 9600 bit/s
+  EXPECT_EQ(payload[120], 3);                // its address
+  EXPECT_EQ(word_at(payload, 67), 148);      // [us] of its motor
   EXPECT_TRUE(status->in_millimetres);
 }
 
@@ -397,7 +399,7 @@ TEST(Lms200Emulator, RangesCarryTheNumberOfTheirFirstValue) {
   EXPECT_EQ(values->first, 27);
   EXPECT_EQ(values->size(), 273U);
   EXPECT_EQ(values->word(0), 1026);
-  EXPECT_EQ(host.ask(range_command({1, 362}).view()), hex(kAcked + kRefused));
+  EXPECT_EQ(host.ask(framed(0, hex("37 01 00 6A 01"))), hex(kAcked + kRefused));
 }
 
 TEST(Lms200Emulator, PartialScansComeInOrder) {

@@ -1,6 +1,6 @@
 // web/src/arm/draw.ts: an arm from above: its links as their shadow on the floor, the plan, the goal of the hand.
 import type { HandGoalJson } from "../contract";
-import { Context, arrow, circle, fill, stroke, trace, write } from "../draw/marks";
+import { Context, arrow, circle, fill, polyline, stroke, write } from "../draw/marks";
 import { Palette } from "../draw/palette";
 import { draw_goal } from "../draw/robot";
 import { Overlay, draw_arms } from "../draw/scene";
@@ -25,9 +25,7 @@ const flat = ([x, y]: Vec3) => ({ x, y });
 function bar(g: Context, view: View, { from, to, radius }: LinkAxis, edge: string, inner: string, dash: number[] = []): void {
   const width = Math.max(kLeast, 2 * radius * view.scale);
   g.lineCap = "round";
-  g.beginPath();
-  trace(g, view, [flat(from), flat(to)]);
-  stroke(g, edge, width, dash);
+  polyline(g, view, [flat(from), flat(to)], edge, width, dash);
   if (dash.length === 0) stroke(g, inner, width - 2 * kEdge);
 }
 
@@ -43,12 +41,8 @@ function draw_plan(g: Context, view: View, palette: Palette, scene: SceneState, 
   if (!arm || places.length === 0 || overlay.hidden.has(kArmLayers.plan.name)) return;
   g.save();
   g.lineJoin = g.lineCap = "round";
-  g.beginPath();
-  trace(g, view, places.map((p) => p.base));
-  stroke(g, palette.accent, 1.8, [2, 6]);
-  g.beginPath();
-  trace(g, view, places.map((p) => flat(p.arm.hand.at)));
-  stroke(g, palette.accent, 1.4, [5, 4]);
+  polyline(g, view, places.map((p) => p.base), palette.accent, 1.8, [2, 6]);
+  polyline(g, view, places.map((p) => flat(p.arm.hand.at)), palette.accent, 1.4, [5, 4]);
   for (const i of spread(places.length, kShownPlaces)) {
     const last = i === places.length - 1;
     const { base, arm: at } = places[i];
@@ -57,9 +51,7 @@ function draw_plan(g: Context, view: View, palette: Palette, scene: SceneState, 
       circle(g, view, base, scene.radius * view.scale);
       stroke(g, palette.accent, 1.4, [5, 4]);
     }
-    g.beginPath();
-    trace(g, view, [at.shoulder, at.elbow, at.wrist, at.hand.at].map(flat));
-    stroke(g, palette.accent, last ? 2.5 : 1.5);
+    polyline(g, view, [at.shoulder, at.elbow, at.wrist, at.hand.at].map(flat), palette.accent, last ? 2.5 : 1.5);
   }
   g.restore();
 }

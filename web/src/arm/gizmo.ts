@@ -1,7 +1,7 @@
 // web/src/arm/gizmo.ts: the handles by which the goal of a hand is moved and turned in 3D, as geometry: three axes, the
 // floor's plane, and three rings, which turn the angles that a person types.
 import type { HandGoalJson } from "../contract";
-import { Point, distance, least, wrap_angle } from "../geometry";
+import { Point, distance, least, to_segment, wrap_angle } from "../geometry";
 import { axes_of, moved, place_of, turned } from "./pose";
 import { Vec3, add, cross, dot, kUnit, length, minus, scaled } from "./vector";
 
@@ -63,18 +63,12 @@ export function handle_at(handles: Handle[], px: Point, slack: number, to_screen
     let best = Infinity;
     for (let i = 1; i < line.length; ++i) {
       const [a, b] = [line[i - 1], line[i]];
-      if (a && b) best = Math.min(best, to_line(px, a, b));
+      if (a && b) best = Math.min(best, to_segment(px, a, b));
     }
     return best - (handle.line.length === 2 ? kArrowFirst : 0);
   };
   const found = least(handles, gap);
   return found && gap(found) <= slack ? found : null;
-}
-
-function to_line(p: Point, a: Point, b: Point): number {
-  const [dx, dy] = [b.x - a.x, b.y - a.y];
-  const share = Math.max(0, Math.min(1, ((p.x - a.x) * dx + (p.y - a.y) * dy) / (dx * dx + dy * dy || 1)));
-  return distance(p, { x: a.x + share * dx, y: a.y + share * dy });
 }
 
 /** How far along its axis [m], or about it [rad], a ray holds a handle about `at`; a place of the level plane has two

@@ -1,7 +1,7 @@
 // web/src/arm/inspect.ts: the links of an arm, the goal of its hand and its plan under a pointer, and their cards.
 import type { Card, Row } from "../edit/facts";
 import type { Eye, Shown, Thing } from "../edit/inspect";
-import { Point, degrees, distance, least } from "../geometry";
+import { Point, degrees, distance, least, to_segment } from "../geometry";
 import type { SceneState } from "../state/scene";
 import { fixed } from "../words";
 import { LinkAxis, kLinks, link_axes } from "./chain";
@@ -33,10 +33,7 @@ const high = (l: LinkAxis) => l.from[2] + l.to[2];
 
 function on_link(eye: Eye, { from, to, radius }: LinkAxis): boolean {
   const [a, b] = [from, to].map(([x, y, z]) => eye.to_screen({ x, y }, z));
-  if (!a || !b) return false;
-  const [dx, dy] = [b.x - a.x, b.y - a.y];
-  const share = Math.max(0, Math.min(1, ((eye.px.x - a.x) * dx + (eye.px.y - a.y) * dy) / (dx * dx + dy * dy || 1)));
-  return distance(eye.px, { x: a.x + share * dx, y: a.y + share * dy }) <= radius * (eye.scale ?? 0) + kSlack;
+  return !!a && !!b && to_segment(eye.px, a, b) <= radius * (eye.scale ?? 0) + kSlack;
 }
 
 /** The place of the plan whose hand or base is under the pointer. */

@@ -3,25 +3,16 @@
 import { ring_sectors, sector_arc, wall_of, wall_words, ways_ahead } from "../state/driven";
 import type { SceneState } from "../state/scene";
 import { kRing, kWall } from "../state/stick";
-import { Context, fill, stroke, trace, write } from "./marks";
+import { Context, fill, polyline, trace, write_over } from "./marks";
 import { Palette } from "./palette";
 import { View } from "./view";
 
 const kWordsAt = 14;    // [px] from an arc, from a wall
 const kWordsWide = 124; // [px] of the wall's
 
-/** Text over anything: with a rim of the background. */
-function write_over(g: Context, palette: Palette, text: string, x: number, y: number, colour: string, align: CanvasTextAlign = "center"): void {
-  const font = `600 12px ${palette.font}`;
+function write_words(g: Context, palette: Palette, text: string, x: number, y: number, colour: string, align: CanvasTextAlign = "center"): void {
   g.save();
-  g.font = font;
-  g.textAlign = align;
-  g.textBaseline = "middle";
-  g.lineWidth = 4;
-  g.lineJoin = "round";
-  g.strokeStyle = palette.bg;
-  g.strokeText(text, x, y);
-  write(g, text, x, y, colour, font, align);
+  write_over(g, text, x, y, colour, `600 12px ${palette.font}`, palette.bg, 4, align);
   g.restore();
 }
 
@@ -40,15 +31,13 @@ export function draw_sectors(g: Context, view: View, palette: Palette, scene: Sc
     g.closePath();
     fill(g, colour);
     g.globalAlpha = 1;
-    g.beginPath();
-    trace(g, view, arc);
-    stroke(g, s.echo ? colour : palette.muted, s.limits ? 4 : s.echo ? 2.2 : 1.2, s.echo ? [] : [2, 5]);
+    polyline(g, view, arc, s.echo ? colour : palette.muted, s.limits ? 4 : s.echo ? 2.2 : 1.2, s.echo ? [] : [2, 5]);
   }
   for (const s of sectors) {
     if (!s.echo) continue;
     const r = s.range * view.scale - kWordsAt;
     if (r < 3 * kWordsAt) continue; // on the robot
-    write_over(g, palette, s.range.toFixed(2), view.sx(pose.x) + r * Math.cos(s.bearing), view.sy(pose.y) - r * Math.sin(s.bearing),
+    write_words(g, palette, s.range.toFixed(2), view.sx(pose.x) + r * Math.cos(s.bearing), view.sy(pose.y) - r * Math.sin(s.bearing),
       s.limits ? palette.external : palette.filtered);
   }
 }
@@ -61,7 +50,7 @@ export function draw_wall_words(g: Context, view: View, palette: Palette, scene:
   const right = Math.cos(bearing) >= 0;
   const x = view.sx(wall.words.x) + kWordsAt * Math.cos(bearing);
   const inside = Math.max(right ? 0 : kWordsWide, Math.min(view.width - (right ? kWordsWide : 0), x));
-  write_over(g, palette, wall_words(wall), inside, view.sy(wall.words.y) - kWordsAt * Math.sin(bearing), palette.internal,
+  write_words(g, palette, wall_words(wall), inside, view.sy(wall.words.y) - kWordsAt * Math.sin(bearing), palette.internal,
     right ? "left" : "right");
 }
 
@@ -70,9 +59,7 @@ export function draw_ways_ahead(g: Context, view: View, palette: Palette, scene:
   g.save();
   g.lineCap = "round";
   for (const { key, line } of ways_ahead(scene, hidden)) {
-    g.beginPath();
-    trace(g, view, line);
-    stroke(g, palette[key.token], 3, key.style === "dashed" ? [8, 6] : []);
+    polyline(g, view, line, palette[key.token], 3, key.style === "dashed" ? [8, 6] : []);
   }
   g.restore();
 }

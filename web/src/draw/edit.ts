@@ -4,7 +4,7 @@ import { handles_of } from "../edit/handles";
 import { Point, Pose } from "../geometry";
 import { Obstacle } from "../obstacle";
 import { Route } from "../state/goals";
-import { Context, arrow, circle, fill, stroke, trace, write } from "./marks";
+import { Context, arrow, circle, fill, polyline, stroke, write } from "./marks";
 import { Palette } from "./palette";
 import { draw_goal } from "./robot";
 import { View } from "./view";
@@ -15,9 +15,7 @@ const kHandle = 6; // [px] half a side
 export function draw_handles(g: Context, view: View, palette: Palette, o: Obstacle): void {
   for (const { at, kind } of handles_of(o)) {
     if (kind === "turn") {
-      g.beginPath();
-      trace(g, view, [o.pose, at]);
-      stroke(g, palette.accent, 1.5);
+      polyline(g, view, [o.pose, at], palette.accent, 1.5);
       circle(g, view, at, kHandle);
     } else {
       g.beginPath();
@@ -30,9 +28,7 @@ export function draw_handles(g: Context, view: View, palette: Palette, o: Obstac
 
 /** The corners so far, joined. */
 export function draw_sketch(g: Context, view: View, palette: Palette, points: Point[]): void {
-  g.beginPath();
-  trace(g, view, points);
-  stroke(g, palette.accent, 2, [5, 4]);
+  polyline(g, view, points, palette.accent, 2, [5, 4]);
   for (const p of points) {
     circle(g, view, p, 4);
     fill(g, palette.accent);
@@ -43,9 +39,7 @@ export function draw_sketch(g: Context, view: View, palette: Palette, points: Po
 export function draw_paths(g: Context, view: View, palette: Palette, obstacles: Obstacle[], selected: number | null): void {
   for (const o of obstacles) {
     if (!o.path || (o.path.comes_and_goes && o.id !== selected)) continue;
-    g.beginPath();
-    trace(g, view, corners_of(o.path));
-    stroke(g, o.id === selected ? palette.accent : palette.obstline, 1.5, [6, 5]);
+    polyline(g, view, corners_of(o.path), o.id === selected ? palette.accent : palette.obstline, 1.5, [6, 5]);
   }
 }
 
@@ -60,9 +54,7 @@ export function draw_start(g: Context, view: View, palette: Palette, start: Pose
 /** All goals with their numbers; the one to which the robot drives is drawn strongest. */
 export function draw_route(g: Context, view: View, palette: Palette, route: Route, selected: number | null): void {
   const { goals, next, loop } = route;
-  g.beginPath();
-  trace(g, view, loop && goals.length > 2 ? [...goals, goals[0]] : goals);
-  stroke(g, palette.ok, 1.4, [3, 5]);
+  polyline(g, view, loop && goals.length > 2 ? [...goals, goals[0]] : goals, palette.ok, 1.4, [3, 5]);
   goals.forEach((goal, i) => {
     g.save();
     if (i < next && !loop) g.globalAlpha = 0.5;

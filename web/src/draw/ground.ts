@@ -2,13 +2,14 @@
 // tilt of the robot. Fetched with the first world whose ground is not level.
 import { Point, degrees, to_parent } from "../geometry";
 import { downhill, slope_of, tilt_of, top_at } from "../ground";
-import { Obstacle, outline } from "../obstacle";
+import { Obstacle } from "../obstacle";
 import { SceneState, robot_pose } from "../state/scene";
 import { fixed } from "../words";
-import { Context, arrow, fill, stroke, trace, write } from "./marks";
+import { Context, arrow, fill, stroke, trace, write, write_over } from "./marks";
 import { Palette } from "./palette";
 import { draw_on_ground } from "./scene";
 import { View } from "./view";
+import { trace_obstacle } from "./world";
 
 const kSteepShade = 0.6;  // [m] of height that has the strongest shade
 const kContours = [0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5]; // [m] between contour lines
@@ -33,20 +34,14 @@ function draw_ground(g: Context, view: View, palette: Palette, ground: Obstacle[
   const highest = (o: Obstacle) => Math.max(o.low, o.height) - (o.kind === "trench" ? 100 : 0);
   for (const o of [...ground].sort((a, b) => highest(a) - highest(b))) {
     g.save();
-    shape(g, view, o);
+    trace_obstacle(g, view, o);
     if (o.kind === "trench") draw_trench(g, view, palette, o);
     else draw_rise(g, view, palette, o);
     g.restore();
-    shape(g, view, o);
+    trace_obstacle(g, view, o);
     stroke(g, o.id === selected ? palette.accent : o.id === hovered ? palette.text : palette.high, o.id === selected ? 2.5 : 1.5);
   }
   for (const o of ground) draw_words(g, view, palette, o);
-}
-
-function shape(g: Context, view: View, o: Obstacle): void {
-  g.beginPath();
-  trace(g, view, outline(o));
-  g.closePath();
 }
 
 /** A hole: dark and hatched, so that shape repeats what colour says. */
@@ -96,14 +91,7 @@ function contours(view: View, o: Obstacle): { at: number; height: number }[] {
 /** The arrow uphill and its slope; numbers at the contour lines and at the ends, beside a piece without room. */
 function draw_words(g: Context, view: View, palette: Palette, o: Obstacle): void {
   const font = `600 11px ${palette.font}`;
-  const put = (text: string, p: Point, colour = palette.text) => {
-    g.lineJoin = "round";
-    g.lineWidth = 3;
-    g.strokeStyle = palette.bg;
-    [g.font, g.textAlign, g.textBaseline] = [font, "center", "middle"];
-    g.strokeText(text, p.x, p.y);
-    write(g, text, p.x, p.y, colour, font);
-  };
+  const put = (text: string, p: Point, colour = palette.text) => write_over(g, text, p.x, p.y, colour, font, palette.bg, 3);
   const inside = (x: number, y: number) => view.to_screen(to_parent(o.pose, x, y));
   const [length, width] = [o.length * view.scale, o.width * view.scale];
   const slope = slope_of(o);

@@ -70,6 +70,17 @@ export function write(g: Context, text: string, x: number, y: number, colour: st
   g.fillText(text, x, y);
 }
 
+/** Writes `text` over anything: with a rim of the colour `under`, `rim` [px] wide. Lines join round from then on. */
+export function write_over(g: Context, text: string, x: number, y: number, colour: string, font: string, under: string,
+  rim: number, align: CanvasTextAlign = "center"): void {
+  g.lineJoin = "round";
+  g.lineWidth = rim;
+  g.strokeStyle = under;
+  [g.font, g.textAlign, g.textBaseline] = [font, align, "middle"];
+  g.strokeText(text, x, y);
+  write(g, text, x, y, colour, font, align);
+}
+
 /** Begins a new outline: a circle of `radius` [px] about `at` in W. */
 export function circle(g: Context, view: View, at: Point, radius: number): void {
   g.beginPath();
@@ -82,6 +93,13 @@ export function trace(g: Context, view: View, points: Point[]): void {
     if (i === 0) g.moveTo(view.sx(p.x), view.sy(p.y));
     else g.lineTo(view.sx(p.x), view.sy(p.y));
   });
+}
+
+/** A line through `points`, `width` [px] wide. */
+export function polyline(g: Context, view: View, points: Point[], colour: string, width: number, dash: number[] = []): void {
+  g.beginPath();
+  trace(g, view, points);
+  stroke(g, colour, width, dash);
 }
 
 /** Discs of `radius` [px]; `xy` holds x, y in turn. Discs outside the window are left out. */

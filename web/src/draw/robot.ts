@@ -1,7 +1,7 @@
 // web/src/draw/robot.ts: the robot, its safety circle, and its goals.
 import { Point, Pose } from "../geometry";
 import { Goal } from "../link/frame";
-import { Context, arrow, circle, fill, stroke, trace, write } from "./marks";
+import { Context, arrow, circle, fill, polyline, stroke, write } from "./marks";
 import { Palette } from "./palette";
 import { SceneState } from "../state/scene";
 import { View } from "./view";
@@ -82,9 +82,7 @@ export function draw_goals_ahead(g: Context, view: View, palette: Palette, goal:
   ahead: Point[], route: boolean): void {
   if (ahead.length === 0) return;
   if (route) {
-    g.beginPath();
-    trace(g, view, [goal, ...ahead]);
-    stroke(g, palette.ok, 1.4, [3, 5]);
+    polyline(g, view, [goal, ...ahead], palette.ok, 1.4, [3, 5]);
   }
   ahead.forEach((next, i) => {
     circle(g, view, next, 9);

@@ -10,7 +10,7 @@ import { SceneState, robot_pose, senses_ground } from "../state/scene";
 import { kRing } from "../state/stick";
 import { sweep_points } from "../state/sweeps";
 import { draw_layer, stacked } from "./layers";
-import { Context, circle, dots, draw_path, fill, stroke, trace, write } from "./marks";
+import { Context, circle, dots, draw_path, fill, polyline, stroke, write } from "./marks";
 import { Palette } from "./palette";
 import { draw_handles, draw_paths, draw_route, draw_sketch, draw_start } from "./edit";
 import { draw_goal, draw_goals_ahead, draw_robot, draw_safety, draw_truth } from "./robot";
@@ -233,9 +233,7 @@ function draw_draft(g: Context, view: View, palette: Palette, draft: Draft): voi
 }
 
 function draw_measure(g: Context, view: View, palette: Palette, from: Point, to: Point): void {
-  g.beginPath();
-  trace(g, view, [from, to]);
-  stroke(g, palette.text, 1.5);
+  polyline(g, view, [from, to], palette.text, 1.5);
   for (const p of [from, to]) {
     circle(g, view, p, 3.5);
     fill(g, palette.text);

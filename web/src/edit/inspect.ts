@@ -2,7 +2,7 @@
 // in 3D alike. A thing is named so that later frames can find it again.
 import type { Link } from "../arm/chain";
 import { arm_at, plan_at } from "../arm/inspect";
-import { Point, Pose, distance, to_child, wrap_angle, least } from "../geometry";
+import { Point, Pose, distance, to_child, to_segment, wrap_angle, least } from "../geometry";
 import {
   LayerView, arcs, arrows, circles, grade_of, grid_place, kGround, kRing, kScanHeight, kStripHeight, kTallest, kUnknownCell,
   lines, places, sectors,
@@ -86,11 +86,7 @@ const gap = (eye: Eye, p: Point, height: number): number => {
 /** Pixels from the pointer to the line from `a` to `b`. */
 function line_gap(eye: Eye, a: Point, b: Point, height: number): number {
   const [p, q] = [eye.to_screen(a, height), eye.to_screen(b, height)];
-  if (!p || !q) return Infinity;
-  const [dx, dy] = [q.x - p.x, q.y - p.y];
-  const length = dx * dx + dy * dy;
-  const share = length > 0 ? Math.max(0, Math.min(1, ((eye.px.x - p.x) * dx + (eye.px.y - p.y) * dy) / length)) : 0;
-  return distance(eye.px, { x: p.x + share * dx, y: p.y + share * dy });
+  return p && q ? to_segment(eye.px, p, q) : Infinity;
 }
 
 /** The sweep by which scanner `k` is drawn: the filtered one where it is shown. */

@@ -1,5 +1,5 @@
 // web/src/experiments/words.ts: states, times and rates of experiments in words.
-import { Tone, Word, fixed } from "../words";
+import { Word, fixed } from "../words";
 import { ExperimentInfo, ExperimentState, Figure, Rate } from "./contract";
 
 const kStates: Record<ExperimentState, Word> = {
@@ -81,5 +81,3 @@ export function mean_words(figure: Figure | undefined, digits: number): string {
 export function p_words(p: number): string {
   return p < 0.0001 ? "p < 0.0001" : `p = ${p.toPrecision(2)}`;
 }
-
-export const outcome_tones: Record<string, Tone> = { reached: "ok", stuck: "warn", collided: "bad", overturned: "bad", fallen: "bad", out_of_time: "warn", failed: "bad" };

@@ -86,12 +86,6 @@ export class SvgContext {
   lineTo(x: number, y: number): void {
     this.path_ += `${this.path_ === "" ? "M" : "L"}${this.at(x, y)}`;
   }
-  quadraticCurveTo(cx: number, cy: number, x: number, y: number): void {
-    this.path_ += `Q${this.at(cx, cy)} ${this.at(x, y)}`;
-  }
-  bezierCurveTo(ax: number, ay: number, bx: number, by: number, x: number, y: number): void {
-    this.path_ += `C${this.at(ax, ay)} ${this.at(bx, by)} ${this.at(x, y)}`;
-  }
   rect(x: number, y: number, w: number, h: number): void {
     this.path_ += `M${this.at(x, y)}L${this.at(x + w, y)}L${this.at(x + w, y + h)}L${this.at(x, y + h)}Z`;
   }

@@ -2,7 +2,7 @@
 // act on the view, the tool and the selection.
 import { App } from "../app";
 import { duplicate, move_edit, remove_edit, round_cm, shifted } from "../edit/edits";
-import { dragged_obstacle, is_ground_tool, is_sketch } from "../edit/drawn";
+import { Tool, dragged_obstacle, is_ground_tool, is_sketch } from "../edit/drawn";
 import { Point, radians, wrap_angle } from "../geometry";
 import { Selection } from "../draw/scene";
 import { Goal } from "../link/frame";
@@ -16,6 +16,10 @@ const kArrows: Record<string, [number, number]> = {
 const kStep = 0.1;      // [m]
 const kFineStep = 0.01; // [m]
 const kTurn = radians(5);
+const kToolKeys: Record<string, Tool> = {
+  v: "pan", g: "goal", s: "start", i: "pose", w: "wall", o: "polygon", k: "mover", c: "cylinder", b: "box", r: "ramp",
+  e: "step", t: "trench", m: "measure",
+};
 const kStepKeys = [".", ","]; // one tick on, one tick back
 
 /** Whether the element in focus takes typed characters. */
@@ -72,19 +76,7 @@ export function use_scene_keys(app: App, hand: Hand): void {
     ".": () => void app.step(),
     ",": () => app.rewind.step(-1),
     end: () => app.go_live(),
-    v: () => app.pick_tool("pan"),
-    g: () => app.pick_tool("goal"),
-    s: () => app.pick_tool("start"),
-    i: () => app.pick_tool("pose"),
-    w: () => app.pick_tool("wall"),
-    o: () => app.pick_tool("polygon"),
-    k: () => app.pick_tool("mover"),
-    c: () => app.pick_tool("cylinder"),
-    b: () => app.pick_tool("box"),
-    r: () => app.pick_tool("ramp"),
-    e: () => app.pick_tool("step"),
-    t: () => app.pick_tool("trench"),
-    m: () => app.pick_tool("measure"),
+    ...Object.fromEntries(Object.entries(kToolKeys).map(([key, tool]) => [key, () => app.pick_tool(tool)])),
     n: () => select_next(app),
     l: () => (app.ui.value.looking ? app.go_live() : app.show_layers(!app.ui.value.layers)),
     "3": () => app.show_three(!app.ui.value.three),
