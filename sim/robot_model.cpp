@@ -23,6 +23,7 @@ constexpr double kCasterTouching = 0.005;  // [m] a caster raised by more carrie
 constexpr double kFirmly = 0.01;          // [m] from the centre of mass to the line of two supports
 constexpr double kAlike = 1e-6;           // [m] less difference of heights decides nothing
 constexpr double kLeastWheelLoad = 0.05;  // of the weight; less drives nothing
+constexpr double kMostBeside = 0.05;      // [m] from the hull to the middle of a wheel beside it
 constexpr int kDirections = 72;
 constexpr double kFoldedRoom = 0.02;  // [m]
 constexpr double kRoundOff = 1e-9;    // [s] of a product of periods
@@ -168,6 +169,24 @@ void Machine::set_disc(double radius_m) {
 
 namespace {
 
+/// Only the hull collides, so the wheels must not stand far outside of it.
+std::optional<std::string> wheel_defect(const RobotModel& robot) {
+  const double beside = std::min(kMostBeside, robot.wheel_radius);
+  for (const double x : robot.wheels) {
+    if (std::abs(x) > robot.hull_length / 2) return "wheels: must be under the hull";
+    const bool within = robot.round ? std::hypot(x, robot.half_track) <= robot.radius + beside
+                                    : robot.half_track <= robot.hull_width / 2 + beside;
+    if (!within) {
+      return "track: the wheels would stand outside of the hull and pass through obstacles; they "
+             "may stand out by their radius, and by 0.05 m at most";
+    }
+  }
+  if (robot.wheel_radius > robot.hull_length / 2) {
+    return "wheel_radius: the wheels would be longer than the hull and pass through obstacles";
+  }
+  return std::nullopt;
+}
+
 /// Of the arm on its base; the folded arm must be clear of the robot.
 std::optional<std::string> arm_defect(const RobotModel& robot, const ArmModel& arm) {
   if (auto problem = defect(arm)) return "arm/" + *problem;
@@ -192,9 +211,7 @@ std::optional<std::string> defect(const RobotModel& robot) {
   for (const Caster& caster : robot.casters) {
     if (!under_hull(robot, caster)) return "casters: must be under the hull";
   }
-  for (const double x : robot.wheels) {
-    if (std::abs(x) > robot.hull_length / 2) return "wheels: must be under the hull";
-  }
+  if (auto problem = wheel_defect(robot)) return problem;
   if (!stands(robot)) {
     return "casters: the robot would tip over; its wheels and casters must surround the middle "
            "of the hull";

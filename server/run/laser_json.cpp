@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "algo/units.hpp"
 #include "server/run/json_fields.hpp"
 #include "server/run/pose_json.hpp"
@@ -14,7 +16,8 @@ namespace server {
 namespace {
 
 using nlohmann::json;
-constexpr std::uint64_t kMaxBeams = 4096;
+constexpr std::uint64_t kFewestBeams = 2;  // one at each end of the field
+constexpr std::uint64_t kMostBeams = 4096;
 
 using Laser = sim::LaserConfig;
 constexpr Field<Laser> kLaser[] = {
@@ -76,11 +79,15 @@ sim::LaserConfig laser_from_json(const JsonReader& in) {
   }
   if (in.has("field_of_view_deg") || in.has("beams")) {
     if (in.has("resolution_deg")) in.fail("resolution_deg", "cannot stand beside beams");
+    const std::uint64_t beams = in.whole("beams", kMostBeams);
+    if (beams < kFewestBeams) {
+      in.fail("beams", fmt::format("is {}, must be at least {}", beams, kFewestBeams));
+    }
     laser = sim::LaserConfig::flat(in.number("field_of_view_deg", {1.0, 360.0}) * kDegree,
-                                   static_cast<std::uint32_t>(in.whole("beams", kMaxBeams)),
+                                   static_cast<std::uint32_t>(beams),
                                    30.0);
   }
-  if (in.has("mount")) laser.mount_R = pose_from_json(in.object("mount"), 0);
+  if (in.has("mount")) laser.mount_R = mount_from_json(in.object("mount"));
   const std::string unit = in.text_or("unit", "mm");
   if (unit != "mm" && unit != "cm") in.fail("unit", "must be \"mm\" or \"cm\"");
   if (unit == "cm") {
