@@ -71,5 +71,14 @@ TEST_F(OwnRobotTest, ItIsFoundByItsNameWhereverARobotIsChosen) {
               HasSubstr("carrier"));
 }
 
+TEST_F(OwnRobotTest, AFolderInPlaceOfAFileIsNamed) {
+  make_folder(path("dir.json"));
+  const std::string folder = path("dir.json").string() + " is a folder, not a file.";
+  EXPECT_EQ(outcome(add_run_command, {"run", world(), "--robot-model", path("dir.json")}), folder);
+  EXPECT_EQ(outcome(add_run_command, {"run", path("dir.json")}), folder);
+  EXPECT_EQ(outcome(add_serve_command, {"serve", "--port", "0", "--scenario", path("dir.json")}),
+            folder);
+}
+
 }  // namespace
 }  // namespace server
