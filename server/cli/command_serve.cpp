@@ -197,6 +197,7 @@ void add_serve_command(Command app, int& status) {
       .show_default();
   command.add_option("--robots", options->app.robots, "Folder of your own robot models")
       .type_name("DIR")
+      .existing_folder()
       .show_default();
   command.add_option("--logs", options->app.logs, "Folder of CARMEN logs to offer for replay")
       .type_name("DIR")

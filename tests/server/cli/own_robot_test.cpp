@@ -71,6 +71,11 @@ TEST_F(OwnRobotTest, ItIsFoundByItsNameWhereverARobotIsChosen) {
               HasSubstr("carrier"));
 }
 
+TEST_F(OwnRobotTest, AnEmptyNameOfARobotIsRefused) {
+  EXPECT_THAT(outcome(add_run_command, {"run", world(), "--robot-model", ""}),
+              HasSubstr("--robot-model"));
+}
+
 TEST_F(OwnRobotTest, AFolderInPlaceOfAFileIsNamed) {
   make_folder(path("dir.json"));
   const std::string folder = path("dir.json").string() + " is a folder, not a file.";
@@ -78,6 +83,13 @@ TEST_F(OwnRobotTest, AFolderInPlaceOfAFileIsNamed) {
   EXPECT_EQ(outcome(add_run_command, {"run", path("dir.json")}), folder);
   EXPECT_EQ(outcome(add_serve_command, {"serve", "--port", "0", "--scenario", path("dir.json")}),
             folder);
+}
+
+TEST_F(OwnRobotTest, AFolderOfRobotsThatIsNoneIsRefused) {
+  EXPECT_THAT(outcome(add_serve_command, {"serve", "--port", "0", "--robots", path("nowhere")}),
+              HasSubstr("--robots"));
+  EXPECT_THAT(outcome(add_serve_command, {"serve", "--port", "0", "--robots", world()}),
+              HasSubstr("--robots"));
 }
 
 }  // namespace
