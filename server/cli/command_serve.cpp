@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include "server/cli/cli.hpp"
 #include "server/cli/signals.hpp"
 #include "server/run/hardware.hpp"
+#include "server/run/json_reader.hpp"
 #include "server/run/paths.hpp"
 #include "server/run/scenario_library.hpp"
 #include "server/serve/app.hpp"
@@ -24,7 +26,7 @@ namespace {
 
 struct ServeCommand {
   AppOptions app{};
-  std::string scenario = "demo";
+  std::optional<std::string> scenario{};
   std::string robot{};  // file of real hardware; empty: simulation
   RunFlags flags{};
   double keep_gigabytes = 2;
@@ -32,17 +34,29 @@ struct ServeCommand {
   std::uint32_t idle_seconds = 900;  // --session-idle
 };
 
+/// Choices that a simulated robot has. Throws DocumentError for the first one given.
+void refuse_choices_of_simulation(const ServeCommand& options) {
+  const auto refuse = [](bool given, const char* option) {
+    if (given) throw DocumentError(option, "cannot be chosen: this is real hardware");
+  };
+  refuse(options.scenario.has_value(), "--scenario");
+  refuse(!options.flags.physics.empty(), "--physics");
+  refuse(options.flags.overrides.seed.has_value(), "--seed");
+  refuse(!options.flags.robot.empty(), "--robot-model");
+}
+
 /// The initial spec, from the devices of a robot's file or from a scenario.
 RunSpec first_spec(const ServeCommand& options) {
+  if (!options.robot.empty()) refuse_choices_of_simulation(options);
   const RobotLibrary robots(options.app.robots);
   RunOverrides overrides = options.flags.resolved(robots);
   // Commands only add to the catalogue, from which the page chooses.
   overrides.controller = options.flags.controllers.named();
   if (options.robot.empty()) {
     const ScenarioLibrary library(options.app.scenarios, options.app.logs, robots);
-    return make_spec(names_file(options.scenario)
-                         ? ScenarioLibrary::from_file(options.scenario, robots)
-                         : library.load(options.scenario),
+    const std::string scenario = options.scenario.value_or("demo");
+    return make_spec(names_file(scenario) ? ScenarioLibrary::from_file(scenario, robots)
+                                          : library.load(scenario),
                      overrides,
                      robots);
   }
@@ -206,8 +220,9 @@ void add_serve_command(Command app, int& status) {
   command
       .add_option("--scenario",
                   options->scenario,
-                  "First world to load: a name, a .json file, or a .log to replay")
-      .show_default();
+                  "First world to load: a name (demo if none is given), a .json file, or a .log to "
+                  "replay")
+      .type_name("NAME|FILE");
   command
       .add_option(
           "--robot", options->robot, "TOML file that describes real hardware (docs/hardware.md)")

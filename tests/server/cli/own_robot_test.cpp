@@ -92,5 +92,20 @@ TEST_F(OwnRobotTest, AFolderOfRobotsThatIsNoneIsRefused) {
               HasSubstr("--robots"));
 }
 
+/// Choices that only a simulated robot has are refused before any device is opened.
+TEST_F(OwnRobotTest, RealHardwareRefusesTheChoicesOfASimulation) {
+  using Choice = std::pair<const char*, const char*>;
+  for (const auto& [option, value] : {Choice{"--physics", "kinematic"},
+                                      {"--scenario", "case3"},
+                                      {"--seed", "7"},
+                                      {"--robot-model", "jackal"}}) {
+    EXPECT_EQ(outcome(add_serve_command,
+                      {"serve", "--port", "0", "--robot", path("none.toml"), option, value}),
+              std::string(option) + ": cannot be chosen: this is real hardware");
+  }
+  EXPECT_THAT(outcome(add_serve_command, {"serve", "--port", "0", "--robot", path("none.toml")}),
+              HasSubstr("cannot be read"));
+}
+
 }  // namespace
 }  // namespace server
