@@ -16,7 +16,9 @@
 #include "server/cli/cli.hpp"
 #include "server/cli/signals.hpp"
 #include "server/run/hardware.hpp"
+#include "server/run/json_limits.hpp"
 #include "server/run/json_reader.hpp"
+#include "server/run/library_files.hpp"
 #include "server/run/paths.hpp"
 #include "server/run/scenario_library.hpp"
 #include "server/serve/app.hpp"
@@ -70,6 +72,13 @@ RunSpec first_spec(const ServeCommand& options) {
   return hardware_spec(describe(robot), overrides);
 }
 
+/// Of a world that is no library's; null for another one.
+std::shared_ptr<const nlohmann::json> first_document(const ServeCommand& options) {
+  const std::string file = options.scenario.value_or("");
+  if (!names_file(file) || file.ends_with(".log")) return nullptr;
+  return std::make_shared<const nlohmann::json>(parse_json(read_file(file, file), kOwnDocument));
+}
+
 /// A loud warning, since docker commands and shell histories often contain --insecure.
 void warn_of_open_door(const net::ServerOptions& net, bool hardware) {
   if (!net.access.insecure || !net.access.token.empty() || net::is_loopback_name(net.address)) {
@@ -116,6 +125,7 @@ void serve(ServeCommand& options) {
   app.evict_oldest = options.evict == "oldest";
   app.sessions.idle = std::chrono::seconds(options.idle_seconds);
   app.first = first_spec(options);
+  app.first_document = first_document(options);
   app.net.log = [](std::string_view sentence) { spdlog::warn(sentence); };
   const std::string database = app.database.string();
   const bool armed = app.armed;
