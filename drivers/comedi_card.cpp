@@ -2,9 +2,13 @@
 #include "drivers/comedi_card.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <utility>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include "drivers/comedi_library.hpp"
 
@@ -33,10 +37,32 @@ constexpr std::array<Kind, 6> kKinds{{{COMEDI_SUBD_AI, "analog input"},
                                       {COMEDI_SUBD_DIO, "digital line"},
                                       {COMEDI_SUBD_COUNTER, "counter"}}};
 
+/// Keeps out other programs that lock the card too, before they touch a voltage or a line. COMEDI
+/// itself lets any number of programs open a card.
+class CardLock {
+ public:
+  /// Throws CardError if another program has the card. Says nothing about a port that cannot be
+  /// opened: the library has the reason.
+  explicit CardLock(const std::string& port)
+      : fd_(::open(port.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
+    if (fd_ < 0 || ::flock(fd_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    ::close(fd_);
+    throw CardError("The analog card at " + port + " is in use by another program.");
+  }
+  ~CardLock() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  CardLock(const CardLock&) = delete;
+  CardLock& operator=(const CardLock&) = delete;
+
+ private:
+  int fd_ = -1;
+};
+
 class ComediCard final : public AnalogCard {
  public:
   ComediCard(std::string port, const ComediSetup& setup)
-      : port_(std::move(port)), setup_(setup), library_(load_comedi(setup.library)) {
+      : port_(std::move(port)), setup_(setup), library_(load_comedi(setup.library)), lock_(port_) {
     device_ = std::unique_ptr<comedi_t, decltype(library_.close)>(library_.open(port_.c_str()),
                                                                   library_.close);
     if (!device_) {
@@ -306,6 +332,7 @@ class ComediCard final : public AnalogCard {
   std::string port_;
   ComediSetup setup_;
   ComediLibrary library_;
+  CardLock lock_;  // released after the card is closed
   std::unique_ptr<comedi_t, decltype(ComediLibrary::close)> device_{nullptr, nullptr};
   std::array<Output, 2> outputs_{};
   std::array<Counter, 2> counters_{};

@@ -37,7 +37,8 @@ struct ComediSetup {
 };
 
 /// Opens `port`, such as "/dev/comedi0", with zero volts and an open relay.
-/// Throws CardError when the library or the card cannot be opened, or lacks what `setup` asks for.
+/// Throws CardError when the library or the card cannot be opened, lacks what `setup` asks for, or
+/// is in use by another program, whose voltages and lines then stay as they are.
 std::unique_ptr<AnalogCard> open_comedi_card(const std::string& port, const ComediSetup& setup);
 
 }  // namespace drivers

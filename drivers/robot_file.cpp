@@ -301,6 +301,10 @@ RobotFile parse_robot(std::string_view text, const std::string& name) {
 }
 
 RobotFile read_robot_file(const std::filesystem::path& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    throw RobotFileError(path.string() + " is a folder, not a file.");
+  }
   std::ifstream stream(path);
   if (!stream) throw RobotFileError(path.string() + " cannot be read.");
   std::ostringstream text;

@@ -25,6 +25,22 @@ namespace fs = std::filesystem;
                            std::system_category().message(errno) + ".");
 }
 
+/// A lock of the maker, as long as it lives. Of another kind than flock(), by which a driver keeps
+/// other drivers out.
+constexpr struct flock kWholeFile {
+  .l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = 0, .l_len = 0, .l_pid = 0
+};
+
+/// True if the emulator that made the file runs.
+bool has_maker(const fs::path& path) {
+  const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  struct flock found = kWholeFile;
+  const bool taken =
+      file >= 0 && ::fcntl(file, F_OFD_GETLK, &found) == 0 && found.l_type != F_UNLCK;
+  if (file >= 0) ::close(file);
+  return taken;
+}
+
 /// The inode of `path`; 0 without a file.
 std::uint64_t inode_of(const fs::path& path) {
   struct stat status {};
@@ -64,13 +80,21 @@ CardFile::CardFile(fs::path path, const CardChannels& channels)
     : path_(std::move(path)), made_(true) {
   if (fs::exists(path_)) {
     const CardFile former(path_);  // throws for a file that is no card, which must not be replaced
-    former.memory().gone = 1;
+    if (has_maker(path_)) {
+      throw std::runtime_error(path_.string() +
+                               " is the card of another emulator that runs: end it first, or "
+                               "choose another place.");
+    }
+    former.memory().gone = 1;  // left over by an emulator that was killed
   }
   // Made under another name first, so that a program that opens the card finds it complete.
   const fs::path making = path_.string() + ".new";
   const int file = ::open(making.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   if (file < 0 || ::ftruncate(file, sizeof(CardMemory)) != 0) fail(path_, "cannot be made");
   map(file);
+  kept_ = file;
+  struct flock whole = kWholeFile;
+  ::fcntl(kept_, F_OFD_SETLK, &whole);
   memory_ = ::new (memory_) CardMemory;
   memory_->channels = channels;
   if (::rename(making.c_str(), path_.c_str()) != 0) fail(path_, "cannot be made");
@@ -86,6 +110,7 @@ CardFile::CardFile(fs::path path) : path_(std::move(path)) {
     throw std::runtime_error(path_.string() + " is no emulated card.");
   }
   map(file);
+  ::close(file);
   if (memory_->magic != CardMemory::kMagic) {
     ::munmap(memory_, sizeof(CardMemory));
     throw std::runtime_error(path_.string() + " is no emulated card.");
@@ -95,7 +120,6 @@ CardFile::CardFile(fs::path path) : path_(std::move(path)) {
 void CardFile::map(int descriptor) {
   void* const at =
       ::mmap(nullptr, sizeof(CardMemory), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
-  ::close(descriptor);
   if (at == MAP_FAILED) fail(path_, "cannot be mapped");
   memory_ = static_cast<CardMemory*>(at);
 }
@@ -107,6 +131,7 @@ CardFile::~CardFile() {
     if (inode_of(path_) == inode_) fs::remove(path_, ignored);  // not another program's file
   }
   ::munmap(memory_, sizeof(CardMemory));
+  if (kept_ >= 0) ::close(kept_);
 }
 
 }  // namespace drivers::emulators

@@ -59,7 +59,8 @@ static_assert(std::atomic<double>::is_always_lock_free);
 /// A CardMemory in a file.
 class CardFile {
  public:
-  /// Makes the file; the destructor removes it. Throws std::runtime_error with a sentence.
+  /// Makes the file; the destructor removes it. Replaces a card left over by a killed emulator.
+  /// Throws std::runtime_error with a sentence, also if the card's emulator runs.
   CardFile(std::filesystem::path path, const CardChannels& channels);
   /// Opens a file that an emulator has made. Throws std::runtime_error likewise.
   explicit CardFile(std::filesystem::path path);
@@ -74,6 +75,7 @@ class CardFile {
 
   std::filesystem::path path_;
   bool made_ = false;
+  int kept_ = -1;            // of the file made, and locked
   std::uint64_t inode_ = 0;  // of the file made; 0: opened
   CardMemory* memory_ = nullptr;
 };

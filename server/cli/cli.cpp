@@ -103,7 +103,10 @@ Option add_robot_option(Command command, std::string& robot) {
           robot,
           "Drive this robot: a file, or a name such as jackal; another than the scenario's brings "
           "its own sensors")
-      .type_name("FILE|NAME");
+      .type_name("FILE|NAME")
+      .check([](const std::string& text) {
+        return text.empty() ? "must be a file or the name of a robot" : "";
+      });
 }
 
 sim::Scenario find_scenario(const std::string& name) {

@@ -18,6 +18,7 @@
 #include "server/cli/cli.hpp"
 #include "server/cli/signals.hpp"
 #include "server/emulate/emulation.hpp"
+#include "server/emulate/robot_toml.hpp"
 #include "server/run/scenario_library.hpp"
 
 namespace server {
@@ -51,6 +52,7 @@ struct EmulateCommand {
   bool rs232 = false;
   unsigned address = 0;
   bool psd = false;
+  std::filesystem::path robot_file{};  // to write; empty: none
 };
 
 /// SIGINT, SIGTERM and SIGHUP as a file to read. It blocks them in all later threads, so make it
@@ -111,6 +113,17 @@ void attend(Emulation& emulation, const Signals& signals) {
   }
 }
 
+/// Writes the robot's file for `serve --robot`.
+void show_robot_file(const EmulationOptions& emulation, const std::filesystem::path& file) {
+  const std::filesystem::path library =
+      emulation.base == BaseKind::Analog ? emulate::emulated_comedi() : std::filesystem::path();
+  if (emulate::write_robot_toml(emulation, library, file)) {
+    fmt::print("Its robot's file: {0}. Drive it: tautline serve --robot {0}\n", file.string());
+  } else {
+    fmt::print("{} is yours and stays as it is.\n", file.string());
+  }
+}
+
 void emulate_devices(EmulateCommand& options) {
   EmulationOptions& emulation = options.emulation;
   emulation.scenario = find_scenario(options.scenario);
@@ -134,6 +147,7 @@ void emulate_devices(EmulateCommand& options) {
   if (emulation.base == BaseKind::Analog) {
     fmt::print("library = \"{}\"\n", emulate::emulated_comedi().string());
   }
+  if (!options.robot_file.empty()) show_robot_file(emulation, options.robot_file);
   std::fflush(stdout);
   attend(running, signals);
 }
@@ -252,8 +266,10 @@ void add_emulate_command(Command app, int& status) {
   });
 
   auto options = std::make_shared<EmulateCommand>();
-  const Command robot = command.add_subcommand(
-      "robot", "A base and the scenario's scanners in one world: DIR/base, DIR/scanner, ...");
+  const Command robot = command.add_subcommand("robot",
+                                               "A base and the scenario's scanners in one world: "
+                                               "DIR/base, DIR/scanner, ..., and DIR/robot.toml "
+                                               "for serve --robot");
   robot.add_option("--links", options->links, "Folder of the ports").type_name("DIR").required();
   robot.add_option("--base", options->base, "p2os, roboteq or analog")
       .one_of({"p2os", "roboteq", "analog"})
@@ -274,6 +290,7 @@ void add_emulate_command(Command app, int& status) {
     emulation.base = std::ranges::find(kBases, options->base, &BaseRow::name)->kind;
     emulation.base_link = options->links / "base";
     if (options->psd) emulation.psd_link = options->links / "psd";
+    options->robot_file = options->links / "robot.toml";
     emulate_devices(*options);
     status = 0;
   });

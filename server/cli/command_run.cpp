@@ -62,7 +62,8 @@ void print_table(const RunSpec& spec, const HeadlessResult& result, std::int64_t
 }
 
 int execute(const RunCommand& options) {
-  const RunSpec spec = make_spec(find_scenario(options.scenario), options.flags.resolved());
+  const RunSpec spec =
+      make_spec(find_scenario(options.scenario), options.flags.resolved(), own_robots());
   const std::unique_ptr<algo::Robot> robot = make_robot(spec);
   std::unique_ptr<Recorder> recorder;
   HeadlessOptions headless;

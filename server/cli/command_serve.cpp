@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -15,6 +16,9 @@
 #include "server/cli/cli.hpp"
 #include "server/cli/signals.hpp"
 #include "server/run/hardware.hpp"
+#include "server/run/json_limits.hpp"
+#include "server/run/json_reader.hpp"
+#include "server/run/library_files.hpp"
 #include "server/run/paths.hpp"
 #include "server/run/scenario_library.hpp"
 #include "server/serve/app.hpp"
@@ -24,7 +28,7 @@ namespace {
 
 struct ServeCommand {
   AppOptions app{};
-  std::string scenario = "demo";
+  std::optional<std::string> scenario{};
   std::string robot{};  // file of real hardware; empty: simulation
   RunFlags flags{};
   double keep_gigabytes = 2;
@@ -32,17 +36,29 @@ struct ServeCommand {
   std::uint32_t idle_seconds = 900;  // --session-idle
 };
 
+/// Choices that a simulated robot has. Throws DocumentError for the first one given.
+void refuse_choices_of_simulation(const ServeCommand& options) {
+  const auto refuse = [](bool given, const char* option) {
+    if (given) throw DocumentError(option, "cannot be chosen: this is real hardware");
+  };
+  refuse(options.scenario.has_value(), "--scenario");
+  refuse(!options.flags.physics.empty(), "--physics");
+  refuse(options.flags.overrides.seed.has_value(), "--seed");
+  refuse(!options.flags.robot.empty(), "--robot-model");
+}
+
 /// The initial spec, from the devices of a robot's file or from a scenario.
 RunSpec first_spec(const ServeCommand& options) {
+  if (!options.robot.empty()) refuse_choices_of_simulation(options);
   const RobotLibrary robots(options.app.robots);
   RunOverrides overrides = options.flags.resolved(robots);
   // Commands only add to the catalogue, from which the page chooses.
   overrides.controller = options.flags.controllers.named();
   if (options.robot.empty()) {
     const ScenarioLibrary library(options.app.scenarios, options.app.logs, robots);
-    return make_spec(names_file(options.scenario)
-                         ? ScenarioLibrary::from_file(options.scenario, robots)
-                         : library.load(options.scenario),
+    const std::string scenario = options.scenario.value_or("demo");
+    return make_spec(names_file(scenario) ? ScenarioLibrary::from_file(scenario, robots)
+                                          : library.load(scenario),
                      overrides,
                      robots);
   }
@@ -54,6 +70,13 @@ RunSpec first_spec(const ServeCommand& options) {
   const std::shared_ptr<drivers::SerialRobot> robot = drivers::open_robot(file);
   robot->note_memory_locked(locked);
   return hardware_spec(describe(robot), overrides);
+}
+
+/// Of a world that is no library's; null for another one.
+std::shared_ptr<const nlohmann::json> first_document(const ServeCommand& options) {
+  const std::string file = options.scenario.value_or("");
+  if (!names_file(file) || file.ends_with(".log")) return nullptr;
+  return std::make_shared<const nlohmann::json>(parse_json(read_file(file, file), kOwnDocument));
 }
 
 /// A loud warning, since docker commands and shell histories often contain --insecure.
@@ -102,6 +125,7 @@ void serve(ServeCommand& options) {
   app.evict_oldest = options.evict == "oldest";
   app.sessions.idle = std::chrono::seconds(options.idle_seconds);
   app.first = first_spec(options);
+  app.first_document = first_document(options);
   app.net.log = [](std::string_view sentence) { spdlog::warn(sentence); };
   const std::string database = app.database.string();
   const bool armed = app.armed;
@@ -197,6 +221,7 @@ void add_serve_command(Command app, int& status) {
       .show_default();
   command.add_option("--robots", options->app.robots, "Folder of your own robot models")
       .type_name("DIR")
+      .existing_folder()
       .show_default();
   command.add_option("--logs", options->app.logs, "Folder of CARMEN logs to offer for replay")
       .type_name("DIR")
@@ -205,8 +230,9 @@ void add_serve_command(Command app, int& status) {
   command
       .add_option("--scenario",
                   options->scenario,
-                  "First world to load: a name, a .json file, or a .log to replay")
-      .show_default();
+                  "First world to load: a name (demo if none is given), a .json file, or a .log to "
+                  "replay")
+      .type_name("NAME|FILE");
   command
       .add_option(
           "--robot", options->robot, "TOML file that describes real hardware (docs/hardware.md)")

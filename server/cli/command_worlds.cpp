@@ -53,7 +53,8 @@ bool show(const Worlds& worlds) {
 
 /// Ends when the other side closes either pipe.
 int execute(const WorldsCommand& options) {
-  const RunSpec spec = make_spec(find_scenario(options.scenario), options.flags.resolved());
+  const RunSpec spec =
+      make_spec(find_scenario(options.scenario), options.flags.resolved(), own_robots());
   Worlds worlds(spec, options.count);
   std::fputs(header(worlds, options.count).c_str(), stdout);
   std::vector<WorldAction> actions(options.count);

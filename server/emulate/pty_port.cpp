@@ -33,6 +33,31 @@ void make_raw(int fd) {
   if (::ioctl(fd, TCSETS2, &settings) != 0) fail("The pseudo-terminal cannot be configured");
 }
 
+/// Throws std::runtime_error unless there is no `link`, or one that a killed emulator left over:
+/// its terminal has gone.
+void refuse_foreign(const fs::path& link) {
+  std::error_code error;
+  const fs::file_status there = fs::symlink_status(link, error);
+  if (!fs::exists(there)) return;
+  if (!fs::is_symlink(there)) {
+    throw std::runtime_error(link.string() + " exists and is no link: choose another --link.");
+  }
+  const fs::path target = fs::read_symlink(link, error);
+  if (target.parent_path() != "/dev/pts") {
+    throw std::runtime_error(
+        fmt::format("{} leads to {}, which is no emulator's: choose another --link.",
+                    link.string(),
+                    target.string()));
+  }
+  if (fs::exists(target, error)) {
+    throw std::runtime_error(
+        fmt::format("{} leads to {}, which another program has: end that emulator, or remove the "
+                    "link if there is none.",
+                    link.string(),
+                    target.string()));
+  }
+}
+
 }  // namespace
 
 PtyPort::PtyPort(fs::path link) : link_(std::move(link)) {
@@ -45,10 +70,7 @@ PtyPort::~PtyPort() {
 
 void PtyPort::plug() {
   if (fd_ >= 0) return;
-  const fs::file_status there = fs::symlink_status(link_);
-  if (fs::exists(there) && !fs::is_symlink(there)) {
-    throw std::runtime_error(link_.string() + " exists and is no link: choose another --link.");
-  }
+  refuse_foreign(link_);
   fd_ = ::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (fd_ < 0) fail("No pseudo-terminal is available");
   std::array<char, 128> name{};
@@ -63,7 +85,7 @@ void PtyPort::plug() {
   make_raw(host);
   ::close(host);
   std::error_code error;
-  fs::remove(link_, error);
+  fs::remove(link_, error);  // a dead one
   fs::create_symlink(slave_, link_, error);
   if (error) {
     throw std::runtime_error(

@@ -16,7 +16,7 @@ namespace server::emulate {
 class PtyPort {
  public:
   /// Throws std::runtime_error with a sentence when no terminal is available, or `link` exists and
-  /// is no symbolic link.
+  /// is not the link of an emulator that was killed.
   explicit PtyPort(std::filesystem::path link);
   ~PtyPort();
   PtyPort(const PtyPort&) = delete;

@@ -2,6 +2,7 @@
 #include "server/record/run_csv.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <span>
 #include <string_view>
@@ -132,7 +133,7 @@ void RunCsv::learn(const algo::Telemetry& t) {
   for (const auto& r : t.observation.sonar) add_mount(sonar_, r.mount_R);
   infrared_ = infrared_ || !t.observation.infrared.empty();
   for (const auto& r : t.observation.bumpers) add_mount(bumpers_, r.mount_R);
-  for (const auto& scan : t.observation.scans) add_mount(scanners_, scan.mount_R);
+  scanners_.learn(t.observation);
   joints_ = std::max<std::size_t>(joints_, t.command.joints);
   arm_ = arm_ || t.arm.present;
   map_ = map_ || t.observation.map_pose.has_value();
@@ -144,6 +145,16 @@ std::span<const FrameColumn> RunCsv::own_arm() const {
 
 std::span<const FrameColumn> RunCsv::own_map() const {
   return map_ ? map_columns() : std::span<const FrameColumn>{};
+}
+
+bool RunCsv::has_column(std::string_view name) const {
+  const auto in = [name](const auto& columns) {
+    return std::ranges::any_of(columns, [name](const auto& each) { return each.name == name; });
+  };
+  constexpr std::array<std::string_view, 5> kLists{
+      "sonar", "bumper", "joint_rate", "infrared", "moved"};
+  return in(tick_columns()) || in(frame_columns()) || in(own_arm()) || in(own_map()) ||
+         in(measures_.columns()) || std::ranges::find(kLists, name) != kLists.end();
 }
 
 std::string RunCsv::header() const {
@@ -158,8 +169,9 @@ std::string RunCsv::header() const {
   };
   for (const TickColumn& column : tick_columns()) add(column.name, column.unit);
   for (const algo::ChannelInfo& channel : channels_) {
-    if (channel.values == 1) add(channel.name, channel.unit);
-    if (channel.values > 1) add_each(channel.name, channel.values, channel.unit);
+    const std::string name = (has_column(channel.name) ? "channel." : "") + channel.name;
+    if (channel.values == 1) add(name, channel.unit);
+    if (channel.values > 1) add_each(name, channel.values, channel.unit);
   }
   for (const FrameColumn& column : frame_columns()) add(column.name, column.unit);
   add_each("sonar", sonar_.size(), "m");
@@ -196,7 +208,9 @@ void RunCsv::put_rings(std::string& out, const algo::Observation& o) const {
 
 /// Of each infrared beam "x y heading range" in R, of each moved obstacle "id x y heading" in W.
 void RunCsv::put_arrays(std::string& out, const algo::Telemetry& t) const {
-  for (const algo::Pose2& mount : scanners_) put_scan(out, newest_at(t.observation.scans, mount));
+  for (std::size_t i = 0; i < scanners_.size(); ++i) {
+    put_scan(out, scanners_.find(t.observation, i));
+  }
   if (infrared_) out += ',';
   for (const algo::RangeReading& r : t.observation.infrared) {
     if (&r != t.observation.infrared.begin()) out += "; ";

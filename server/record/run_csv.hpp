@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "algo/observation.hpp"
@@ -14,6 +15,7 @@
 #include "db/run_reader.hpp"
 #include "server/record/arm_columns.hpp"
 #include "server/record/frame_measures.hpp"
+#include "server/record/scan_slots.hpp"
 
 namespace server {
 
@@ -23,8 +25,9 @@ struct CsvOptions {
 };
 
 /// The columns, in this order: those of a tick; the channels of the robot, "NAME" or "NAME[0]",
-/// "NAME[1]"; those of a frame; "sonar[0]" and "bumper[0]" in the order of their first readings;
-/// the commanded rates of the joints; the arm's; the controller's measures; the arrays.
+/// "NAME[1]", or "channel.NAME" if another column has the name; those of a frame; "sonar[0]" and
+/// "bumper[0]" in the order of their first readings; the commanded rates of the joints; the arm's;
+/// the controller's measures; the arrays.
 class RunCsv {
  public:
   /// `run` must have its document. Reads the whole run once, up to a damaged block, to learn which
@@ -45,6 +48,8 @@ class RunCsv {
   using Mounts = std::vector<algo::Pose2>;  // of a ring's sensors
 
   void learn(const algo::Telemetry& t);
+  /// Whether a column other than the channels' has this name.
+  bool has_column(std::string_view name) const;
   std::span<const FrameColumn> own_arm() const;
   std::span<const FrameColumn> own_map() const;
   void put_rings(std::string& out, const algo::Observation& o) const;
@@ -53,7 +58,8 @@ class RunCsv {
   db::RunId run_ = 0;
   CsvOptions options_{};
   std::vector<algo::ChannelInfo> channels_{};
-  Mounts sonar_{}, bumpers_{}, scanners_{};
+  Mounts sonar_{}, bumpers_{};
+  ScanSlots scanners_{};
   bool infrared_ = false;
   std::size_t joints_ = 0;
   bool arm_ = false;

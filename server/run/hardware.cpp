@@ -93,6 +93,9 @@ RunSpec hardware_spec(std::shared_ptr<const Hardware> hardware, const RunOverrid
   if (!overrides.robot.is_null()) {
     throw DocumentError("robot", "cannot be chosen: this is real hardware");
   }
+  if (overrides.physics) {
+    throw DocumentError("physics", "cannot be chosen: this is real hardware");
+  }
   RunSpec spec = make_spec(hardware->scenario, overrides);
   const std::string& controller = spec.scenario.controller;
   if (drives_from_outside(spec) && controller != hardware->external_controller) {

@@ -2,8 +2,11 @@
 #include "server/run/laser_json.hpp"
 
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
+
+#include <fmt/format.h>
 
 #include "algo/units.hpp"
 #include "server/run/json_fields.hpp"
@@ -13,7 +16,8 @@ namespace server {
 namespace {
 
 using nlohmann::json;
-constexpr std::uint64_t kMaxBeams = 4096;
+constexpr std::uint64_t kFewestBeams = 2;  // one at each end of the field
+constexpr std::uint64_t kMostBeams = 4096;
 
 using Laser = sim::LaserConfig;
 constexpr Field<Laser> kLaser[] = {
@@ -36,10 +40,30 @@ constexpr Field<Laser> kLaser[] = {
     {"pepper", &Laser::pepper, {0, 1}},
 };
 
-/// Whether `degrees` is an angular resolution of the LMS200.
-bool lms200_mode(double degrees) {
-  const auto is = [&](double mode) { return std::abs(degrees - mode) < 1e-9; };
-  return is(0.25) || is(0.5) || is(1.0);
+constexpr double kDegree = algo::units::kRadiansPerDegree;
+
+/// The resolution [deg] of the LMS200 that has the beams and the mirror of `laser`.
+std::optional<double> lms200_mode(const Laser& laser) {
+  for (const double degrees : {0.25, 0.5, 1.0}) {
+    const Laser mode = Laser::with_resolution(degrees);
+    if (laser.field_of_view == mode.field_of_view &&
+        laser.angle_increment == mode.angle_increment && laser.turns == mode.turns) {
+      return degrees;
+    }
+  }
+  return std::nullopt;
+}
+
+/// The degrees that are read back as exactly `radians`; the shorter number if there are several.
+double degrees_of(double radians) {
+  const double degrees = radians / kDegree;
+  for (const double each : {std::round(degrees * 1e9) / 1e9,
+                            degrees,
+                            std::nextafter(degrees, 0.0),
+                            std::nextafter(degrees, 1e3)}) {
+    if (each * kDegree == radians) return each;
+  }
+  return degrees;
 }
 
 }  // namespace
@@ -55,12 +79,15 @@ sim::LaserConfig laser_from_json(const JsonReader& in) {
   }
   if (in.has("field_of_view_deg") || in.has("beams")) {
     if (in.has("resolution_deg")) in.fail("resolution_deg", "cannot stand beside beams");
-    laser = sim::LaserConfig::flat(
-        in.number("field_of_view_deg", {1.0, 360.0}) * algo::units::kRadiansPerDegree,
-        static_cast<std::uint32_t>(in.whole("beams", kMaxBeams)),
-        30.0);
+    const std::uint64_t beams = in.whole("beams", kMostBeams);
+    if (beams < kFewestBeams) {
+      in.fail("beams", fmt::format("is {}, must be at least {}", beams, kFewestBeams));
+    }
+    laser = sim::LaserConfig::flat(in.number("field_of_view_deg", {1.0, 360.0}) * kDegree,
+                                   static_cast<std::uint32_t>(beams),
+                                   30.0);
   }
-  if (in.has("mount")) laser.mount_R = pose_from_json(in.object("mount"), 0);
+  if (in.has("mount")) laser.mount_R = mount_from_json(in.object("mount"));
   const std::string unit = in.text_or("unit", "mm");
   if (unit != "mm" && unit != "cm") in.fail("unit", "must be \"mm\" or \"cm\"");
   if (unit == "cm") {
@@ -81,11 +108,10 @@ json to_json(const sim::LaserConfig& laser) {
   out["mount"] = to_json(laser.mount_R);
   out["unit"] = laser.unit == sim::LaserUnit::Millimetre ? "mm" : "cm";
   out["noise_shape"] = laser.noise_shape == sim::NoiseShape::Uniform ? "uniform" : "gaussian";
-  const double degrees = laser.angle_increment / algo::units::kRadiansPerDegree;
-  if (lms200_mode(degrees)) {
-    out["resolution_deg"] = std::round(degrees * 100) / 100;
+  if (const auto degrees = lms200_mode(laser)) {
+    out["resolution_deg"] = *degrees;
   } else {
-    out["field_of_view_deg"] = laser.field_of_view / algo::units::kRadiansPerDegree;
+    out["field_of_view_deg"] = degrees_of(laser.field_of_view);
     out["beams"] = std::lround(laser.field_of_view / laser.angle_increment) + 1;
   }
   return out;

@@ -26,6 +26,11 @@ bool names_file(const std::string& text) {
 }
 
 std::string read_file(const fs::path& path, const std::string& shown) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) {
+    throw LibraryError(LibraryError::Kind::NotFound,
+                       fmt::format("{} is a folder, not a file.", shown));
+  }
   std::ifstream in(path, std::ios::binary);
   if (!in) throw LibraryError(LibraryError::Kind::NotFound, fmt::format("Cannot read {}.", shown));
   return {std::istreambuf_iterator<char>(in), {}};

@@ -2,7 +2,10 @@
 #include "server/run/pose_json.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <string_view>
+
+#include <fmt/format.h>
 
 #include "algo/intent.hpp"
 
@@ -28,6 +31,16 @@ algo::Vec2 point_from_json(const json& value, const std::string& path) {
 algo::Pose2 pose_from_json(const JsonReader& in, double heading) {
   return {
       in.number("x", kCoordinate), in.number("y", kCoordinate), angle_or(in, "heading", heading)};
+}
+
+algo::Pose2 mount_from_json(const JsonReader& in) {
+  constexpr NumberRange kReach{-10, 10};                 // [m] as far as a mast or boom may reach
+  constexpr double kTurn = 2 * std::numbers::pi + 0.01;  // [rad] rounded up
+  const double heading = in.number_or("heading", 0);
+  if (std::abs(heading) > kTurn) {
+    in.fail("heading", fmt::format("is {:g}, more than a turn: angles are in radians", heading));
+  }
+  return {in.number("x", kReach), in.number("y", kReach), algo::wrap_angle(heading)};
 }
 
 algo::SetGoal goal_from_json(const JsonReader& in) {

@@ -22,6 +22,9 @@ algo::Vec2 point_from_json(const nlohmann::json& value, const std::string& path)
 algo::Pose2 pose_from_json(const JsonReader& in, double heading);
 nlohmann::json to_json(const algo::Pose2& pose);
 
+/// The same of a sensor on a robot: within 10 m of its middle, the heading within a full turn.
+algo::Pose2 mount_from_json(const JsonReader& in);
+
 /// {"x","y","heading"?}; without a heading, any heading will do.
 algo::SetGoal goal_from_json(const JsonReader& in);
 

@@ -23,6 +23,8 @@ constexpr NumberRange kMass{0.01, 1e5};       // [kg]
 constexpr NumberRange kChange{1e-3, 100};     // [m/s2] and [rad/s2]
 constexpr NumberRange kJerk{0, 1e4};          // [m/s3] and [rad/s3]
 
+/// [m] Casters on both sides of the drive wheels would carry the load if they were as low as these.
+constexpr double kCasterRaised = 0.001;
 constexpr Field<sim::Caster> kCaster[] = {
     required("x", &sim::Caster::x, kPlace),
     {"y", &sim::Caster::y, kPlace},
@@ -68,13 +70,12 @@ void read_hull(const JsonReader& in, sim::RobotModel& robot) {
 
 /// The default casters, one ahead and one behind, if all wheels lie in one line.
 std::vector<sim::Caster> usual_casters(const sim::RobotModel& robot) {
-  constexpr double kRadius = 0.04;   // [m] at most
-  constexpr double kOfHull = 0.2;    // of half the hull's length
-  constexpr double kRaised = 0.001;  // [m] so that the drive wheels carry the load
-  constexpr double kShare = 0.77;    // of the way from R to the hull
+  constexpr double kRadius = 0.04;  // [m] at most
+  constexpr double kOfHull = 0.2;   // of half the hull's length
+  constexpr double kShare = 0.77;   // of the way from R to the hull
   const double x = kShare * robot.hull_length / 2;
   const double radius = std::min(kRadius, kOfHull * robot.hull_length / 2);
-  return {{x, 0, radius, kRaised}, {-x, 0, radius, kRaised}};
+  return {{x, 0, radius, kCasterRaised}, {-x, 0, radius, kCasterRaised}};
 }
 
 void read_wheels(const JsonReader& in, sim::RobotModel& robot) {
@@ -89,7 +90,8 @@ void read_wheels(const JsonReader& in, sim::RobotModel& robot) {
   robot.casters.clear();
   if (in.has("casters")) {
     in.each("casters", sim::kMostCasters, [&](const json& value, const std::string& at) {
-      read_only_fields({value, at}, kCaster, robot.casters.emplace_back());
+      read_only_fields(
+          {value, at}, kCaster, robot.casters.emplace_back(sim::Caster{.raised = kCasterRaised}));
     });
   } else if (robot.wheels.size() == 1) {
     robot.casters = usual_casters(robot);

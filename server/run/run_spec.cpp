@@ -31,12 +31,19 @@ namespace {
 using nlohmann::json;
 constexpr std::uint64_t kMaxSeed = (std::uint64_t{1} << 53) - 1;  // exact in a JSON number
 
+/// True with a sonar ring, or a scanner that looks ahead.
+bool sees_ahead(sim::Sensors sensors) {
+  if (sensors.sonar) return true;
+  sensors.sonar.emplace();  // beside a ring, only a scanner that looks ahead counts as a laser
+  return sensors.has_laser();
+}
+
 /// @param at  prefix of the fields in the document: "" or "robots/3/"
 void check_choices(const algo::ControllerCatalogue& catalogue,
                    const std::string& at,
                    const std::string& controller_name,
                    const std::string& filter,
-                   bool has_laser) {
+                   const sim::Sensors& sensors) {
   const algo::ControllerInfo* const controller = catalogue.find(controller_name);
   if (controller == nullptr) {
     std::string known;
@@ -44,7 +51,12 @@ void check_choices(const algo::ControllerCatalogue& catalogue,
     throw DocumentError(at + "controller",
                         fmt::format("'{}' is unknown; known are{}", controller_name, known));
   }
-  if (!has_laser && !controller->by_sonar) {
+  if (!sees_ahead(sensors)) {
+    throw DocumentError(at + "lasers",
+                        "none looks ahead, and there is no sonar ring: the robot would wait for a "
+                        "scan for ever");
+  }
+  if (!sensors.has_laser() && !controller->by_sonar) {
     std::string fit;
     for (const auto& c : catalogue.entries()) fit += c.by_sonar ? fmt::format(" {}", c.name) : "";
     throw DocumentError(
@@ -88,7 +100,7 @@ void check_others(const algo::ControllerCatalogue& catalogue, const sim::Scenari
                   at,
                   robot.controller.value_or(scenario.controller),
                   robot.filter.value_or(scenario.filter),
-                  (robot.robot ? *robot.robot : scenario.robot).sensors.has_laser());
+                  (robot.robot ? *robot.robot : scenario.robot).sensors);
     const algo::PipelineConfig config = pipeline_config(robot, scenario);
     check_parameters(catalogue, at, config.controller, config.parameters);
   }
@@ -202,8 +214,7 @@ RunSpec make_spec(sim::Scenario scenario,
   spec.controllers = overrides.controllers;
   spec.map = choose_map(scenario, overrides);
   const algo::ControllerCatalogue& catalogue = controllers_of(spec);
-  check_choices(
-      catalogue, "", scenario.controller, scenario.filter, scenario.robot.sensors.has_laser());
+  check_choices(catalogue, "", scenario.controller, scenario.filter, scenario.robot.sensors);
   spec.parameters = parameters_from_json(overrides.parameters, "parameters", scenario.parameters);
   check_parameters(catalogue, "", scenario.controller, spec.parameters);
   spec.seed = overrides.seed.value_or(1);

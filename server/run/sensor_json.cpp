@@ -95,13 +95,6 @@ constexpr Field<Inclinometer> kInclinometer[] = {
     {"period", &Inclinometer::period},
 };
 
-algo::Pose2 mount_from_json(const JsonReader& in) {
-  constexpr NumberRange kOnHull{-10, 10};  // [m]
-  return {in.number("x", kOnHull),
-          in.number("y", kOnHull),
-          algo::wrap_angle(in.number_or("heading", 0, {-100, 100}))};
-}
-
 /// Throws DocumentError at `path` for settings that the model refuses.
 template <typename Config, std::size_t N>
 Config config_from_json(const JsonReader& in,

@@ -64,7 +64,8 @@ struct App::Impl {
                 .first = options.first.hardware
                              ? make_spec(library.load("demo"),
                                          {.controllers = options.first.controllers})
-                             : options.first} {
+                             : options.first,
+                .first_document = options.first_document} {
     options.net.limits.frame_bytes = kRequestBytes;
     options.net.offload = [this](std::function<void()> job) {
       workers.post([job = std::move(job)](Worker&) { job(); });
@@ -80,6 +81,7 @@ struct App::Impl {
     Session& main = sessions.main().session();
     if (options.unattended) main.watch().need_nobody();
     main.load(std::move(options.first));
+    sessions.main().set_document(std::move(options.first_document));
     if (options.armed) main.arm_when_ready();
     server->every(kTendPeriod, [this, ended = std::move(options.ended)] {
       sessions.tend(SessionRegistry::Clock::now());

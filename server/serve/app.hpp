@@ -24,6 +24,7 @@ struct AppOptions {
   bool evict_oldest = false;    // finished runs may be deleted to make room
   bool require_record = false;  // a tick that is not recorded ends the live run
   RunSpec first{};              // first run of the session `main`
+  std::shared_ptr<const nlohmann::json> first_document{};  // its world, if not the library's
   SessionRules sessions{};
   std::function<std::vector<std::string>()> log_tail{};  // the newest log lines, oldest first
   std::size_t threads = 0;        // that advance simulated runs; 0: one per processor

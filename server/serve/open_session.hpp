@@ -4,7 +4,9 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -46,6 +48,13 @@ class OpenSession {
   /// The endpoint of its WebSocket clients.
   const net::WsEndpoint& door() const { return door_; }
 
+  /// The document of the world, if it came as one; null: the world is one of the library. The world
+  /// is read from it again when another robot is chosen.
+  const std::shared_ptr<const nlohmann::json>& document() const { return document_; }
+  void set_document(std::shared_ptr<const nlohmann::json> document) {
+    document_ = std::move(document);
+  }
+
   /// True if data came from the control thread since the last tend().
   bool has_news() const { return news_.load(std::memory_order_acquire); }
   /// Handles that data and any work due by the clock.
@@ -64,6 +73,7 @@ class OpenSession {
   SessionLoader loader_;
   Bridge bridge_;
   net::WsEndpoint door_;
+  std::shared_ptr<const nlohmann::json> document_{};
   Clock::time_point used_ = Clock::now();
   Clock::time_point tended_{};
 };

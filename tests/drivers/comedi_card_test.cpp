@@ -54,6 +54,27 @@ struct Slot {
   CardFile file;
 };
 
+/// A second program must neither stop the first one's motors nor drive them.
+TEST(ComediCard, ASecondProgramIsKeptOutAndChangesNothing) {
+  const Slot slot;
+  {
+    const auto card = slot.open();
+    card->write({2, -3});
+    card->set_relay_line(true);
+    const std::uint32_t left = slot.memory().samples[0];
+    const std::uint32_t right = slot.memory().samples[1];
+    const std::uint32_t levels = slot.memory().levels;
+    EXPECT_EQ(slot.refusal(),
+              "The analog card at " + slot.path().string() + " is in use by another program.");
+    EXPECT_EQ(slot.memory().samples[0], left);
+    EXPECT_EQ(slot.memory().samples[1], right);
+    EXPECT_EQ(slot.memory().levels, levels);
+    EXPECT_EQ(slot.memory().opened, 1U);
+    EXPECT_NO_THROW(card->write({0, 0}));
+  }
+  EXPECT_EQ(slot.refusal(), "");
+}
+
 TEST(ComediCard, OpensWithZeroVoltsAndTheRelayOpen) {
   const Slot slot;
   slot.memory().samples[0] = 60000;  // an earlier program died

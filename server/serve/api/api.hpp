@@ -3,6 +3,8 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,7 @@ struct ApiContext {
   Workers& workers;
   std::function<void(std::function<void()>)> post_to_io{};  // from any thread
   RunSpec first{};                                          // default run of a new session
+  std::shared_ptr<const nlohmann::json> first_document{};   // its world, if not the library's
   std::string started{};                                    // ISO 8601, UTC
   net::Server* server = nullptr;                            // io thread only
   std::function<std::vector<std::string>()> log_tail{};     // the newest log lines, oldest first
@@ -64,11 +67,13 @@ void queue_runs(ApiContext& context, RepeatedRun asked, const net::Responder& re
 /// its own, and where the robot begins. Without a scenario: the world as it stands.
 struct LoadRequest {
   std::optional<std::string> name{};
-  std::optional<nlohmann::json> document{};
+  /// Of the world asked for; without a scenario, that of the world as it stands, or null.
+  std::shared_ptr<const nlohmann::json> document{};
   RunOverrides overrides{};
   std::optional<algo::Pose2> begin_W{};
+  bool same_world = false;
 };
-/// Throws DocumentError.
+/// Without the document of the world as it stands. Throws DocumentError.
 LoadRequest load_request(const nlohmann::json& body);
 /// The run that `asked` describes; `now` is the run to keep the world of. Throws DocumentError or
 /// LibraryError. Not on the io thread.

@@ -1,10 +1,14 @@
 // server/serve/api/load_request.cpp: begins another run of a session, by a document.
+#include <exception>
+#include <memory>
+#include <string>
 #include <utility>
 
 #include "server/run/hardware.hpp"
 #include "server/run/json_reader.hpp"
 #include "server/run/map_robot.hpp"
 #include "server/run/pose_json.hpp"
+#include "server/run/robot_json.hpp"
 #include "server/run/scenario_json.hpp"
 #include "server/serve/api/api.hpp"
 
@@ -18,10 +22,14 @@ sim::Scenario scenario_to_load(const ScenarioLibrary& library,
                                const LoadRequest& asked,
                                const sim::Scenario& now) {
   if (asked.name) return library.load(*asked.name);
-  if (asked.document) return scenario_from_json(*asked.document, library.robots());
-  if (asked.overrides.robot.is_null() || !library.has(now.name)) return now;
+  const auto read = [&] { return scenario_from_json(*asked.document, library.robots()); };
+  if (!asked.same_world) return read();
+  if (asked.overrides.robot.is_null() || !(asked.document || library.has(now.name))) return now;
   // The scenario is read again, so that another robot gets the sensors that the scenario gives it.
-  sim::Scenario anew = library.load(now.name);
+  sim::Scenario anew = asked.document ? read() : library.load(now.name);
+  anew.name = now.name;  // it may have been saved under another one
+  anew.title = now.title;
+  anew.description = now.description;
   anew.start = now.start;
   anew.goal = now.goal;
   anew.waypoints = now.waypoints;
@@ -34,6 +42,20 @@ sim::Scenario scenario_to_load(const ScenarioLibrary& library,
   anew.map = now.map;
   anew.lost = now.lost;
   return anew;
+}
+
+/// A document that has the whole model of a robot names none. A name then chooses the robot of the
+/// library, with its sensors, even if it has the model's name: the file may be another by now.
+void choose_of_library(const RobotLibrary& robots, LoadRequest& asked) {
+  json& choice = asked.overrides.robot;
+  if (!choice.is_string() || !asked.same_world || !asked.document) return;
+  const auto written = asked.document->find("robot");
+  if (written == asked.document->end() || !written->is_object()) return;
+  try {
+    choice = robot_document(robots.load(choice.get<std::string>()));
+  } catch (const LibraryError& e) {
+    if (e.kind() != LibraryError::Kind::NotFound) throw DocumentError("robot", e.what());
+  }
 }
 
 /// The document of a session's own world names its map without the folder.
@@ -57,6 +79,7 @@ LoadRequest load_request(const json& body) {
   LoadRequest out{.overrides = overrides_from_json(body)};
   if (in.has("scenario") && !body["scenario"].is_object()) out.name = in.text("scenario", 64);
   if (in.has("scenario") && body["scenario"].is_object()) out.document = body["scenario"];
+  out.same_world = !in.has("scenario");
   if (in.has("begin")) {
     const JsonReader begin = in.object("begin");
     begin.only({"x", "y", "heading"});
@@ -66,11 +89,11 @@ LoadRequest load_request(const json& body) {
 }
 
 RunSpec spec_to_load(const ScenarioLibrary& library, LoadRequest asked, const RunSpec& now) {
-  const bool same_world = !asked.name && !asked.document;
   asked.overrides.controllers = now.controllers;
-  if (same_world && !asked.overrides.seed) asked.overrides.seed = now.seed;
+  if (asked.same_world && !asked.overrides.seed) asked.overrides.seed = now.seed;
+  choose_of_library(library.robots(), asked);
   sim::Scenario scenario = scenario_to_load(library, asked, now.scenario);
-  if (same_world || same_map(scenario, now)) asked.overrides.map = now.map;
+  if (asked.same_world || same_map(scenario, now)) asked.overrides.map = now.map;
   if (!asked.overrides.map) scenario = library.placed(std::move(scenario));
   RunSpec spec = make_spec(std::move(scenario), asked.overrides, library.robots());
   spec.begin_W = asked.begin_W;
@@ -96,11 +119,16 @@ bool load_from_json(ApiContext& context,
     };
     return session.loader().load(plan, std::move(done));
   }
-  const auto plan = [&library = context.library, &session, asked]() -> SessionLoader::Make {
+  const auto plan = [&library = context.library, &session, asked]() mutable -> SessionLoader::Make {
     const RunSpec now = session.session().again();
+    if (asked.same_world) asked.document = session.document();
     return [&library, asked, now] { return spec_to_load(library, asked, now); };
   };
-  return session.loader().load(plan, std::move(done));
+  const auto loaded = [&session, asked, done = std::move(done)](const std::exception_ptr& failure) {
+    if (!failure && !asked.same_world) session.set_document(asked.document);
+    if (done) done(failure);
+  };
+  return session.loader().load(plan, loaded);
 }
 
 }  // namespace server

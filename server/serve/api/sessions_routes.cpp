@@ -38,23 +38,19 @@ json list(ApiContext& context) {
           {"most", context.sessions.rules().sessions}};
 }
 
-/// Reads the fields of `/load`; without a scenario, uses the run that the server began with.
-SessionLoader::Make make_from(ApiContext& context, const json& body) {
-  LoadRequest asked = load_request(body);
-  if (!asked.overrides.seed) asked.overrides.seed = context.first.seed;
-  return [&context, asked = std::move(asked)] {
-    return spec_to_load(context.library, asked, context.first);
-  };
-}
-
 void open_session(ApiContext& context, const net::Request& request, const net::Responder& respond) {
+  // The fields of `/load`; without a scenario, the run that the server began with.
+  LoadRequest asked = load_request(body_json(request));
+  if (!asked.overrides.seed) asked.overrides.seed = context.first.seed;
+  if (asked.same_world) asked.document = context.first_document;
   context.sessions.open(
-      make_from(context, body_json(request)),
-      [respond](OpenSession* open, const std::exception_ptr& failure) {
+      [&context, asked] { return spec_to_load(context.library, asked, context.first); },
+      [respond, document = asked.document](OpenSession* open, const std::exception_ptr& failure) {
         if (failure) {
           respond(problem_of(failure));
           return;
         }
+        open->set_document(document);
         net::Response response = json_response(201, {{"id", open->id()}});
         response.headers.push_back({"Location", "/api/v1/sessions/" + open->id()});
         respond(std::move(response));

@@ -304,6 +304,43 @@ TEST_F(EmulationTest, LinksAreRemovedAtTheEndAndNeverReplaceAFile) {
   EXPECT_TRUE(fs::is_regular_file(options_.scanner_links[0]));
 }
 
+TEST_F(EmulationTest, ASecondEmulatorLeavesTheFirstItsLinks) {
+  add_scanner();
+  add_base(BaseKind::Roboteq);
+  const Emulation first(options_);
+  const fs::path scanner = fs::read_symlink(options_.scanner_links[0]);
+  const fs::path base = fs::read_symlink(options_.base_link);
+  try {
+    const Emulation second(options_);
+    ADD_FAILURE() << "two emulators have one link";
+  } catch (const std::runtime_error& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr(options_.scanner_links[0].string() + " leads to"));
+    EXPECT_THAT(e.what(), testing::HasSubstr("another program has"));
+  }
+  EXPECT_EQ(fs::read_symlink(options_.scanner_links[0]), scanner);
+  EXPECT_EQ(fs::read_symlink(options_.base_link), base);
+}
+
+TEST_F(EmulationTest, ASecondEmulatorLeavesTheFirstItsCard) {
+  add_base(BaseKind::Analog);
+  const Emulation first(options_);
+  const auto card = open_card(options_.base_link);
+  EXPECT_THROW(Emulation{options_}, std::runtime_error);
+  EXPECT_NO_THROW(card->read());
+  EXPECT_TRUE(fs::exists(options_.base_link));
+}
+
+TEST_F(EmulationTest, ADeadLinkIsReplacedAndAForeignOneIsKept) {
+  add_scanner();
+  const fs::path& link = options_.scanner_links[0];
+  fs::create_symlink("/dev/pts/999999", link);  // left over by a killed emulator
+  { const Emulation emulation(options_); }
+  EXPECT_FALSE(fs::is_symlink(link));
+  fs::create_symlink("/nowhere/at-all", link);
+  EXPECT_THROW(Emulation{options_}, std::runtime_error);
+  EXPECT_EQ(fs::read_symlink(link), "/nowhere/at-all");
+}
+
 TEST_F(EmulationTest, InvalidCommandsAreRefusedWithASentence) {
   add_scanner();
   add_base(BaseKind::P2os);

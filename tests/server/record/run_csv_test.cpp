@@ -300,5 +300,47 @@ TEST_F(RunCsvTest, ScansAndMovedObstaclesComeOnlyWhenAskedFor) {
   EXPECT_EQ(plain.count("moved") + plain.count("infrared") + plain.count("scan[0].ranges"), 0U);
 }
 
+/// One scanner above the other: x, y and heading are the same.
+TEST_F(RunCsvTest, ScannersAtOnePlaceHaveColumnsOfTheirOwn) {
+  std::vector<algo::Telemetry> ticks(4);
+  const auto scan = [&](std::size_t tick, double stamp, double range) {
+    ticks[tick].tick = tick;
+    algo::LaserScan& out = ticks[tick].observation.scans.append();
+    out.stamp = stamp;
+    out.angle_min = -0.25;
+    out.angle_increment = 0.5;
+    out.range_max = 8;
+    out.turn_period = 0.01;
+    out.turns = 2;
+    out.resize(2);
+    out.set_ok(0, range);
+    out.set_ok(1, range);
+  };
+  ticks[0].tick = 0;
+  scan(1, 0.016, 5);  // the upper one alone, at first
+  scan(2, 0.030, 1);
+  scan(2, 0.036, 5);
+  scan(3, 0.050, 1);
+  auto cells = table(whole(stored(paper_robot(), ticks), 1, {.arrays = true}));
+  EXPECT_EQ(cells["scan[0].stamp"], (Cells{"", "", "0.03", "0.05"}));
+  EXPECT_EQ(cells["scan[0].ranges"], (Cells{"", "", "1 1", "1 1"}));
+  EXPECT_EQ(cells["scan[1].stamp"], (Cells{"", "0.016", "0.036", ""}));
+  EXPECT_EQ(cells["scan[1].ranges"], (Cells{"", "5 5", "5 5", ""}));
+}
+
+TEST_F(RunCsvTest, AChannelWithTheNameOfAColumnIsNamedApart) {
+  algo::RobotSpec robot = paper_robot();
+  robot.channels = {{.name = "x"}, {.name = "odometry.v"}, {.name = "sonar", .values = 2}};
+  robot.channels.push_back({.name = "battery"});
+  std::vector<algo::Telemetry> ticks(1);
+  ticks[0].observation.channels.append() = {.channel = 0, .stamp = 0, .values = {7.5}};
+  auto cells = table(whole(stored(robot, ticks), 1, {.arrays = true}));
+  EXPECT_EQ(cells["channel.x"], Cells{"7.5"});
+  EXPECT_EQ(cells["channel.odometry.v"], Cells{""});
+  EXPECT_EQ(cells["channel.sonar[1]"], Cells{""});
+  EXPECT_EQ(cells["battery"], Cells{""});
+  EXPECT_EQ(cells["x"], Cells{"0"});
+}
+
 }  // namespace
 }  // namespace server

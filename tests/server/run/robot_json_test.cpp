@@ -188,9 +188,17 @@ TEST(RobotJson, BadFilesGetASentenceThatNamesTheField) {
       {R"({"casters": []})", "casters: the robot would tip over"},
       {R"({"casters": [{"x": 0.4, "radius": 0.04}]})", "casters: the robot would tip over"},
       {R"({"casters": [{"x": 0.4}]})", "casters/0/radius: is missing"},
+      {R"({"casters": [{"x": 0.3, "radius": 0.04, "raised": 0},
+                       {"x": -0.3, "radius": 0.04, "raised": 0}]})",
+       "casters: they would carry the robot and leave its drive wheels without load"},
       {R"({"casters": [{"x": 5, "radius": 0.04}]})", "casters: must be under the hull"},
       {R"({"casters": [{"x": 0.58, "radius": 0.04}]})", "casters: must be under the hull"},
       {R"({"title": 7})", "title: must be"},
+      {R"({"track": 3})", "track: the wheels would stand outside of the hull"},
+      {R"({"track": 0.81})", "track: the wheels would stand outside of the hull"},
+      {R"({"wheel_radius": 5})", "wheel_radius: the wheels would be longer than the hull"},
+      {R"({"wheels": [0.3], "hull": {"length": null, "width": null, "radius": 0.35}})",
+       "track: the wheels would stand outside of the hull"},
       {R"({"casters": [{"x": 0.4, "radius": 0.04, "z": 1}]})", "casters/0: unknown field 'z'"},
       {R"({"limits": null})", "limits: is missing"},
       {R"({"limits": {"speed": null}})", "limits/speed: is missing"},
@@ -202,6 +210,17 @@ TEST(RobotJson, BadFilesGetASentenceThatNamesTheField) {
       {R"({"lasers": {}})", "lasers: must be"},
       {R"({"lasers": [{"resolution_deg": 0.3}]})", "lasers/0/resolution_deg: "},
       {R"({"lasers": [{"range": 30}]})", "lasers/0: unknown field 'range'"},
+      {R"({"lasers": [{"mount": {"x": 500, "y": 3}}]})",
+       "lasers/0/mount/x: is 500, must lie in -10 to 10"},
+      {R"({"lasers": [{"mount": {"x": 0.5, "y": -11}}]})", "lasers/0/mount/y: is -11, must lie in"},
+      {R"({"lasers": [{"mount": {"x": 0.5, "y": 0, "heading": 180}}]})",
+       "lasers/0/mount/heading: is 180, more than a turn: angles are in radians"},
+      {R"({"infrared": [{"mount": {"x": 0.5, "y": 0, "heading": -90}}]})",
+       "infrared/0/mount/heading: is -90, more than a turn: angles are in radians"},
+      {R"({"lasers": [{"field_of_view_deg": 270, "beams": 0}]})",
+       "lasers/0/beams: is 0, must be at least 2"},
+      {R"({"lasers": [{"field_of_view_deg": 270, "beams": 1}]})",
+       "lasers/0/beams: is 1, must be at least 2"},
       {R"({"sonar": {"count": 0}})", "sonar: "},
       {R"({"infrared": [{"beams": 1000}]})", "infrared/0/beams: is 1000, must be at most 361"},
       {R"({"bumpers": 9})", "bumpers: is 9, must be at most 8"},
@@ -306,6 +325,34 @@ TEST(RobotJson, AScenarioCanRemoveTheSonar) {
   EXPECT_FALSE(scenario_from_json(document).robot.sensors.sonar);
 }
 
+TEST(RobotJson, ASensorOnAMastBesideTheHullIsLegal) {
+  json document = carrier();
+  document["lasers"] = json::parse(R"([{"mount": {"x": 2.5, "y": -1, "heading": 6.2831853}}])");
+  EXPECT_NEAR(read_robot(document).sensors.lasers[0].mount_R.heading, 0, 1e-6);
+}
+
+/// Without them the robot would wait for its first scan until the time is up.
+TEST(RobotJson, ARobotThatSeesNothingAheadCannotRun) {
+  const auto refusal = [](const char* sensors) -> std::string {
+    json robot = carrier();
+    robot.merge_patch(json::parse(sensors));
+    try {
+      make_spec(scenario_from_json({{"name", "a"}, {"robot", robot}}), {});
+    } catch (const DocumentError& e) {
+      return e.what();
+    }
+    return "runs";
+  };
+  for (const char* sensors : {R"({"lasers": []})",
+                              R"({"lasers": [{"mount": {"x": -0.5, "y": 0, "heading": 3.14}}]})",
+                              R"({"lasers": [], "infrared": [{}]})"}) {
+    EXPECT_THAT(refusal(sensors), StartsWith("lasers: none looks ahead, and there is no sonar"))
+        << sensors;
+  }
+  EXPECT_THAT(refusal(R"({"lasers": [], "sonar": {}})"), HasSubstr("'modified' needs a laser"));
+  EXPECT_EQ(refusal(R"({"lasers": [{"mount": {"x": 0.5, "y": 0, "heading": 1.5}}]})"), "runs");
+}
+
 TEST(RobotJson, AFurtherRobotIsCheckedByItsOwnScanners) {
   json blind = carrier();
   blind["lasers"] = json::array();
@@ -354,7 +401,8 @@ TEST_F(RobotFolder, TheNewestModelOfTheSameNameDrivesWithTheScenariosSensors) {
 
 TEST(RobotJson, AcceptedModelsReadBack) {
   for (const char* patch : {R"({"hull": {"low": 0, "high": 0.0015}})",
-                            R"({"hull": {"length": 0.05, "width": 0.05}, "track": 0.05})"}) {
+                            R"({"hull": {"length": 0.05, "width": 0.05}, "track": 0.05,
+                                "wheel_radius": 0.02})"}) {
     json document = carrier();
     document.merge_patch(json::parse(patch));
     const json written = robot_document(read_robot(document));

@@ -38,6 +38,7 @@ class AppTest : public ::testing::Test {
     options.net.access = access;
     options.database = folder_ / "runs.db";
     options.scenarios = folder_ / "scenarios";
+    options.robots = folder_ / "robots";
     options.first = std::move(first);
     options.sessions = rules;
     app_.emplace(std::move(options));

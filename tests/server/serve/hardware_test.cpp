@@ -341,6 +341,13 @@ TEST_F(HardwareAppTest, AResetDisarmsAndASimulationCannotReplaceIt) {
   EXPECT_EQ(get("/session").at("source"), "hardware");
 }
 
+TEST_F(HardwareAppTest, ItHasNoPhysicsToChoose) {
+  for (const char* key : {"physics", "vehicle"}) {
+    const json load = {{"action", "load"}, {key, "kinematic"}};
+    expect_problem(ask("POST", "/session/control", load.dump()), 422, "real hardware");
+  }
+}
+
 TEST_F(HardwareAppTest, ItsTimeCannotBePausedSteppedOrSpedUp) {
   for (const char* body :
        {R"({"action":"pause"})", R"({"action":"step"})", R"({"action":"speed","speed":2})"}) {

@@ -1,5 +1,9 @@
 // tests/server/serve/world_test.cpp: a world that people have built outlives loads and resets, and
 // can be saved.
+#include <filesystem>
+#include <fstream>
+#include <string>
+
 #include "tests/server/serve/app_fixture.hpp"
 
 namespace server {
@@ -111,6 +115,80 @@ TEST_F(WorldTest, ADocumentIsLoadedWithTheRobotWhereItSays) {
   expect_problem(ask("POST", "/session/control", R"({"action":"load","begin":{"x":"a","y":1}})"),
                  422,
                  "begin/x");
+}
+
+/// A world that somebody sent may be called as one of the library.
+TEST_F(WorldTest, OfADocumentKeepsItsFieldsWhenAnotherRobotIsChosen) {
+  const json other = {{"start", {{"x", 5}, {"y", 5}}}, {"goal", nullptr}};
+  const json world = {{"name", "case1"},
+                      {"title", "Mine"},
+                      {"physics", "kinematic"},
+                      {"period", 0.05},
+                      {"time_limit", 77},
+                      {"drive", {{"yaw_slip", 0.1}, {"max_v", 0.3}}},
+                      {"lasers", {{{"resolution_deg", 1}}}},
+                      {"robots", {other}}};
+  ASSERT_EQ(load({{"scenario", world}}), 200);
+  build();
+  const auto expect_mine = [&] {
+    const json now = get("/session/scenario");
+    EXPECT_EQ(now["title"], "Mine");
+    EXPECT_EQ(now["period"], 0.05);
+    EXPECT_EQ(now["time_limit"], 77);
+    EXPECT_EQ(now["drive"]["yaw_slip"], 0.1);
+    EXPECT_EQ(now["robots"].size(), 1U);
+    EXPECT_EQ(now["obstacles"].size(), 1U);
+  };
+  ASSERT_EQ(load({{"robot", "jackal"}}), 200);
+  expect_mine();
+  EXPECT_EQ(get("/session/scenario")["robot"], "jackal");
+  ASSERT_EQ(load({{"robot", "silvermate"}}), 200);  // its own, with the sensors that it gives it
+  expect_mine();
+  EXPECT_EQ(get("/session/scenario")["lasers"][0]["resolution_deg"], 1);
+  EXPECT_EQ(get("/session/scenario")["drive"]["max_v"], 0.3);
+
+  ASSERT_EQ(load({{"scenario", "case1"}}), 200);  // now the library's
+  ASSERT_EQ(load({{"robot", "jackal"}}), 200);
+  EXPECT_NE(get("/session/scenario")["title"], "Mine");
+}
+
+TEST_F(WorldTest, OfADocumentStaysTheSessionsOwnInANewSession) {
+  const json world = {{"name", "case1"}, {"physics", "kinematic"}, {"time_limit", 77}};
+  const auto made = ask("POST", "/sessions", json{{"scenario", world}}.dump());
+  ASSERT_EQ(made.status, 201);
+  const std::string at = "/sessions/" + json::parse(made.body)["id"].get<std::string>();
+  ASSERT_EQ(post(at + "/control", {{"action", "load"}, {"robot", "jackal"}}), 200);
+  EXPECT_EQ(get(at + "/scenario")["time_limit"], 77);
+}
+
+/// A file that somebody has changed is read anew, with its scanners.
+TEST_F(WorldTest, OfADocumentGetsTheWholeNewestModelOfAUsersRobot) {
+  const auto write = [&](double length, const json& lasers) {
+    const json robot = {{"name", "carrier"},
+                        {"hull", {{"length", length}, {"width", 0.7}}},
+                        {"mass", 200},
+                        {"track", 0.6},
+                        {"wheel_radius", 0.1},
+                        {"limits", {{"speed", 0.8}, {"turn", 1.2}}},
+                        {"lasers", lasers}};
+    std::filesystem::create_directories(folder_ / "robots");
+    std::ofstream(folder_ / "robots" / "carrier.json") << robot.dump();
+  };
+  const json front = {{"mount", {{"x", 0.5}, {"y", 0}}}};
+  const json back = {{"mount", {{"x", -0.5}, {"y", 0}, {"heading", 3}}}};
+  for (const json& world :
+       {json{{"name", "mine"}, {"physics", "kinematic"}},
+        json{{"name", "mine"}, {"physics", "kinematic"}, {"robot", "carrier"}}}) {
+    write(1.2, json::array({front, back}));
+    ASSERT_EQ(load({{"scenario", world}}), 200);
+    ASSERT_EQ(load({{"robot", "carrier"}}), 200);
+    EXPECT_EQ(get("/session/scenario")["lasers"].size(), 2U);
+    write(1.4, json::array({front}));
+    ASSERT_EQ(load({{"robot", "carrier"}}), 200);
+    const json now = get("/session/scenario");
+    EXPECT_EQ(now["robot"]["hull"]["length"], 1.4);
+    EXPECT_EQ(now["lasers"].size(), 1U);
+  }
 }
 
 TEST_F(WorldTest, IsSavedAndOpenedUnderItsName) {
