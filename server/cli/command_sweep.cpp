@@ -95,6 +95,8 @@ std::unique_ptr<Recorder> open_recorder(const std::string& folder) {
   make_folder(folder);
   RecorderOptions options = recorder_options();
   options.retention_bytes = 0;
+  options.when_full =
+      "Make room on the disk, then give the same command again: it makes the missing records.";
   return std::make_unique<Recorder>((std::filesystem::path(folder) / "runs.db").string(), options);
 }
 

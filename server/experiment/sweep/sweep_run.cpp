@@ -5,6 +5,7 @@
 #include <ctime>
 #include <exception>
 #include <map>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -38,6 +39,12 @@ Cost measured(experiment::Trial trial) {
   const double spent = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   return {spent / std::max(row["time_s"], trial.spec.scenario.period),
           static_cast<double>(dump_json(row_json(0, row)).size() + 1)};
+/// Throws std::runtime_error if ticks of the run are not stored. Null: it was not to be recorded.
+void check_record(const RunChannel* record) {
+  if (record == nullptr) return;
+  const std::string problem = record->failed() ? record->problem() : record->loss();
+  if (problem.empty()) return;
+  throw std::runtime_error("The record of this run is incomplete. " + problem);
 }
 
 }  // namespace
@@ -46,7 +53,26 @@ void write_scenarios(const Document& document, const fs::path& folder) {
   make_folder(folder / "scenarios");
   for (const sim::Scenario& scenario : document.scenarios) {
     write_text(folder / scenario_file(scenario), to_json(scenario).dump(1) + "\n");
+    order += scenario.name + '\n';
+    const fs::path map(scenario.map);
+    if (map.has_parent_path()) write_map(read_map(map), folder / "scenarios" / map.filename());
   }
+  replace_text(folder / kOrder, order);
+}
+
+std::optional<Document> document_in(const fs::path& folder,
+                                    const nlohmann::json& source,
+                                    std::shared_ptr<const algo::ControllerCatalogue> controllers) {
+  std::error_code missing;
+  if (!fs::exists(folder / kOrder, missing)) return std::nullopt;
+  std::vector<sim::Scenario> scenarios;
+  std::istringstream names(read_text(folder / kOrder));
+  for (std::string name; std::getline(names, name);) {
+    const fs::path file = folder / scenario_file({.name = name});
+    if (!fs::exists(file, missing)) return std::nullopt;
+    scenarios.push_back(ScenarioLibrary::from_file(file));
+  }
+  return document_with(source, std::move(scenarios), std::move(controllers));
 }
 
 std::unique_ptr<RunLog> open_log(const Plan& plan, const fs::path& folder) {
@@ -73,9 +99,14 @@ Row run_one(const Plan& plan,
             const Recording& recording) {
   try {
     const experiment::Trial trial = plan.trial(i);
+    std::shared_ptr<RunChannel> record;
     const experiment::TrialOptions recorded{
         .stop = stop, .record = [&](const algo::RobotSpec& robot) {
-          return recording.recorder->open(headless_run(trial.spec, robot, 0));
+          if (!recording.recorder->takes_more()) {
+            throw std::runtime_error("The run cannot be recorded. " +
+                                     recording.recorder->status().sentence);
+          }
+          return record = recording.recorder->open(headless_run(trial.spec, robot, 0));
         }};
     const bool all = recording.recorder != nullptr && !recording.failures_only;
     Row row = run_trial(trial, all ? recorded : experiment::TrialOptions{.stop = stop});
@@ -86,6 +117,7 @@ Row run_one(const Plan& plan,
     while (recording.recorder != nullptr && !recording.recorder->flush() &&
            !stop.stop_requested()) {  // waits for a store that is locked, or without room
     }
+    if (row.outcome != algo::Outcome::Stopped) check_record(record.get());
     row.track_W = experiment::coarse(row.track_W);
     return row;
   } catch (const std::exception& e) {

@@ -41,8 +41,8 @@ struct Recording {
   Recorder* recorder = nullptr;
   bool failures_only = false;  // those that do not reach; each is made once more with its record
 };
-/// The row of a run: Failed with the reason if it breaks, Stopped after a stop. Its record is
-/// stored when this returns.
+/// The row of a run: Failed with the reason if it breaks or its record is incomplete, Stopped after
+/// a stop. Its record is stored when this returns.
 experiment::Row run_one(const Plan& plan,
                         std::size_t i,
                         const std::stop_token& stop,

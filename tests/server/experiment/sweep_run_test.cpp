@@ -2,6 +2,8 @@
 // workers and interruptions, and never mixes two documents.
 #include "server/experiment/sweep/sweep_run.hpp"
 
+#include <chrono>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -300,6 +302,58 @@ TEST_F(SweepRun, EstimatesFromTheFirstSeconds) {
   EXPECT_GT(cost.cpu_time, 0);
   EXPECT_GT(cost.bytes, 24 * 500.0);
   EXPECT_LT(cost.bytes, 24 * 5000.0);
+}
+
+TEST_F(SweepRun, RunsWhoseRecordIsIncompleteFailAndAreMadeAgain) {
+  make_folder(folder("whole"));
+  make_folder(folder("out"));
+  std::uint64_t bytes = 0;  // of all records
+  {
+    Recorder recorder((folder("whole") / "runs.db").string());
+    run_sweep(plan, folder("whole"), {.threads = 1}, Wanted::Missing, {}, {&recorder, false});
+    bytes = recorder.ask([](db::RunStore& store) { return store.used_bytes(); });
+  }
+  const std::string store = (folder("out") / "runs.db").string();
+  std::size_t failed = 0;
+  {
+    Recorder recorder(store,
+                      {.retention_bytes = bytes * 2 / 3,
+                       .wait_for_room = false,
+                       .when_full = "Make room.",
+                       .commit_interval = std::chrono::milliseconds(5)});
+    const Rows rows =
+        run_sweep(plan, folder("out"), {.threads = 1}, Wanted::Missing, {}, {&recorder, false});
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (!rows.broken(i)) continue;
+      EXPECT_THAT(rows.reason(i), HasSubstr("record"));
+      EXPECT_THAT(rows.reason(i), testing::EndsWith("Make room."));
+      ++failed;
+    }
+    EXPECT_GT(failed, 0U);
+    EXPECT_LT(failed, rows.size());
+    EXPECT_EQ(results_of(plan, rows).failed, failed);
+  }
+  std::size_t made = 0;
+  {
+    Recorder recorder(store);
+    const Rows rows =
+        run_sweep(plan,
+                  folder("out"),
+                  {.threads = 1, .progress = [&](std::size_t, std::size_t all) { made = all; }},
+                  Wanted::Missing,
+                  {},
+                  {&recorder, false});
+    EXPECT_TRUE(results_of(plan, rows).complete());
+  }
+  EXPECT_EQ(made, failed);
+  std::set<std::string> whole;  // by scenario, controller, settings and seed
+  db::RunReader reader(store);
+  for (const db::RunRow& row : reader.list({}, 100).runs) {
+    if (row.lost_ticks > 0 || row.ticks == 0) continue;
+    whole.insert(row.what.scenario + row.what.controller + row.what.parameters +
+                 std::to_string(row.what.seed));
+  }
+  EXPECT_EQ(whole.size(), plan.size());
 }
 
 TEST_F(SweepRun, StoresWholeRunsOfAllOrOfThoseThatDoNotReach) {
