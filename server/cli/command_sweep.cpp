@@ -114,13 +114,18 @@ sweep::Rows run(const sweep::Plan& plan, const SweepCommand& command) {
   };
   std::unique_ptr<Recorder> recorder;
   if (command.record != "nothing") recorder = open_recorder(command.out);
-  return run_sweep(
-      plan,
-      command.out,
-      pool,
-      wanted_runs(command.rerun),
-      [](const std::string& text) { fmt::print(stderr, "tautline: warning: {}\n", text); },
-      {recorder.get(), command.record == "failures"});
+  try {
+    return run_sweep(
+        plan,
+        command.out,
+        pool,
+        wanted_runs(command.rerun),
+        [](const std::string& text) { fmt::print(stderr, "tautline: warning: {}\n", text); },
+        {recorder.get(), command.record == "failures"});
+  } catch (const sweep::OtherExperiment& e) {
+    throw std::runtime_error(std::string(e.what()) +
+                             " Choose another folder with --out, or remove this one.");
+  }
 }
 
 /// Runs one shard and writes no report, which only the whole can have.

@@ -5,6 +5,7 @@
 #include <ctime>
 #include <exception>
 #include <map>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "server/experiment/track.hpp"
 #include "server/record/run_json.hpp"
 #include "server/run/json_limits.hpp"
+#include "server/run/map_file.hpp"
 #include "server/run/scenario_json.hpp"
 #include "server/run/text_file.hpp"
 
@@ -23,6 +25,7 @@ using experiment::Row;
 
 constexpr double kMeasured = 5;       // [s] of the run clock
 constexpr double kCsvPerLogLine = 1;  // a run has about as many bytes in runs.csv as in the log
+constexpr const char* kOrder = "scenarios/order.txt";  // names in the document's order, one a line
 
 /// [s] of CPU per second of the run clock, and the bytes of a run's line.
 struct Cost {
@@ -51,6 +54,7 @@ void check_record(const RunChannel* record) {
 
 void write_scenarios(const Document& document, const fs::path& folder) {
   make_folder(folder / "scenarios");
+  std::string order;
   for (const sim::Scenario& scenario : document.scenarios) {
     write_text(folder / scenario_file(scenario), to_json(scenario).dump(1) + "\n");
     order += scenario.name + '\n';

@@ -182,6 +182,31 @@ TEST_F(SweepRun, AnotherVersionIsAnotherExperiment) {
               StartsWith("tautline (the version) is \"0.0.9\" there and "));
 }
 
+TEST_F(SweepRun, TheCopiesOfTheScenariosGiveTheSameExperiment) {
+  json every = short_document();
+  every.erase("sweep");
+  every["controllers"] = {"go_to_goal"};
+  every.erase("comparisons");
+  every["time_factor"] = 2;
+  every["noise"] = {{"laser", 0.01}};
+  const ScenarioLibrary library("", "");
+  for (const ScenarioEntry& entry : library.list()) {
+    if (library.load(entry.name).end_W()) every["scenarios"].push_back(entry.name);
+  }
+  every["scenarios"].push_back({{"random_layouts", {{"count", 2}, {"robot", "jackal"}}}});
+  const Document document = document_from_json(every, library);
+  EXPECT_FALSE(document_in(folder("out"), every).has_value());
+  write_scenarios(document, folder("out"));
+  const auto copied = document_in(folder("out"), every);
+  ASSERT_TRUE(copied.has_value());
+  EXPECT_EQ(identity_of(*copied), identity_of(document));
+  ASSERT_EQ(copied->scenarios.size(), document.scenarios.size());
+  for (std::size_t i = 0; i < document.scenarios.size(); ++i) {
+    EXPECT_EQ(copied->scenarios[i].name, document.scenarios[i].name);
+    EXPECT_EQ(copied->scenarios[i].time_limit, document.scenarios[i].time_limit);
+  }
+}
+
 TEST_F(SweepRun, LeavesAForeignFileAlone) {
   make_folder(folder("out"));
   for (const char* const text : {"my notes", "my notes\n", "{}\n", "[1]\n{\n"}) {

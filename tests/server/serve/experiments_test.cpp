@@ -13,6 +13,8 @@
 #include "server/experiment/sweep/sweep_report.hpp"
 #include "server/experiment/sweep/sweep_results.hpp"
 #include "server/experiment/sweep/sweep_run.hpp"
+#include "server/run/robot_json.hpp"
+#include "server/run/robot_library.hpp"
 #include "server/run/text_file.hpp"
 #include "server/serve/net/http.hpp"
 
@@ -117,6 +119,36 @@ TEST_F(ExperimentsTest, GoesOnAfterTheEndOfTheServer) {
   experiment->write_report();
   EXPECT_EQ(results_in(experiment->folder()),
             expected(source, library, folder().parent_path() / "alone"));
+}
+
+TEST_F(ExperimentsTest, ItsCopiesOutliveTheRobotsAndScenariosOfTheUser) {
+  const fs::path user = folder().parent_path() / "user";
+  make_folder(user);
+  json robot = robot_document(builtin_robot("jackal"));
+  robot["name"] = "carrier";
+  write_text(user / "carrier.json", robot.dump());
+  write_text(user / "mine.json", R"({"name":"mine","robot":"carrier","goal":{"x":1,"y":0}})");
+  const ScenarioLibrary own(user, "", RobotLibrary(user));
+  json source = document("copied", 2);
+  source["scenarios"][0]["robot"] = "carrier";
+  source["scenarios"].push_back("mine");
+  source["time_factor"] = 2;
+  std::string id;
+  {
+    Experiments experiments(rules(), own);
+    id = experiments.post(source, "", "").experiment->info().id;
+    ASSERT_TRUE(comes_to(*experiments.find(id), ExperimentState::Finished));
+  }
+  for (const bool gone : {false, true}) {
+    robot["mass"] = 18;
+    write_text(user / "carrier.json", robot.dump());
+    write_text(user / "mine.json", R"({"name":"mine","goal":{"x":2,"y":0}})");
+    if (gone) fs::remove_all(user);
+    Experiments experiments(rules(), own);
+    EXPECT_EQ(experiments.find(id)->write_report()->at("runs"), 8) << gone;
+    experiments.resume(id);
+    EXPECT_EQ(experiments.find(id)->info().state, ExperimentState::Finished) << gone;
+  }
 }
 
 TEST_F(ExperimentsTest, ARunUnderWayAtTwoDeathsOfTheServerFailsAndTheOthersFinish) {
@@ -307,6 +339,13 @@ TEST_F(ExperimentsTest, FilesThatCannotBeReadAreNamedAndLeftAlone) {
   EXPECT_THAT([&] { experiments.find(id)->plan(); },
               ThrowsMessage<net::HttpError>(HasSubstr("runs.jsonl")));
   EXPECT_EQ(read_text(folder() / id / "runs.jsonl"), "nonsense\n");
+  write_text(folder() / id / "runs.jsonl",
+             R"({"sweep":"0","identity":{"tautline":"0.0.1"}})"
+             "\n");
+  Experiments others(rules(), library);
+  EXPECT_THAT([&] { others.find(id)->plan(); },
+              ThrowsMessage<net::HttpError>(testing::AllOf(HasSubstr("another experiment"),
+                                                           testing::Not(HasSubstr("--out")))));
 }
 
 }  // namespace
