@@ -71,6 +71,10 @@ int print_estimate(const sweep::Plan& plan) {
   fmt::print("CPU time  at most {}, if every run lasts until its time limit\n",
              duration_text(cost.cpu_time));
   fmt::print("files     about {}\n", bytes_text(cost.bytes));
+  if (cost.extrapolated) {
+    fmt::print(
+        "These runs are slow: both are guessed from the first seconds of some controllers.\n");
+  }
   return kReached;
 }
 

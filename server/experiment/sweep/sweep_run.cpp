@@ -2,9 +2,7 @@
 #include "server/experiment/sweep/sweep_run.hpp"
 
 #include <algorithm>
-#include <ctime>
 #include <exception>
-#include <map>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -23,25 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 using experiment::Row;
 
-constexpr double kMeasured = 5;       // [s] of the run clock
-constexpr double kCsvPerLogLine = 1;  // a run has about as many bytes in runs.csv as in the log
 constexpr const char* kOrder = "scenarios/order.txt";  // names in the document's order, one a line
 
-/// [s] of CPU per second of the run clock, and the bytes of a run's line.
-struct Cost {
-  double cpu_time = 0;
-  double bytes = 0;
-};
-
-Cost measured(experiment::Trial trial) {
-  double& limit = trial.spec.scenario.time_limit;
-  limit = std::min(time_limit(trial.spec), kMeasured);
-  const std::clock_t begin = std::clock();
-  Row row = run_trial(trial);
-  row.track_W = experiment::coarse(row.track_W);
-  const double spent = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-  return {spent / std::max(row["time_s"], trial.spec.scenario.period),
-          static_cast<double>(dump_json(row_json(0, row)).size() + 1)};
 /// Throws std::runtime_error if ticks of the run are not stored. Null: it was not to be recorded.
 void check_record(const RunChannel* record) {
   if (record == nullptr) return;
@@ -165,27 +146,6 @@ Rows run_sweep(const Plan& plan,
   make(0, alone, 1);
   if (!options.stop.stop_requested()) make(alone, others.size(), options.threads);
   return rows;
-}
-
-Estimate estimate(const Plan& plan) {
-  Estimate sum;
-  std::map<std::size_t, Cost> costs;  // by controller
-  for (std::size_t i = 0; i < plan.size();) {
-    const experiment::Trial trial = plan.trial(i);
-    const RunPlace at = plan.place(i);
-    const auto repeats = static_cast<double>(plan.repeats(at.scenario, at.arm));
-    const std::size_t controller = plan.arms()[at.arm].controller;
-    const auto known = costs.find(controller);
-    const Cost cost = known != costs.end() ? known->second : measured(trial);
-    costs.emplace(controller, cost);
-    sum.cpu_time += repeats * cost.cpu_time * time_limit(trial.spec);
-    sum.bytes += repeats * cost.bytes * (1 + kCsvPerLogLine);
-    i += plan.repeats(at.scenario, at.arm);
-  }
-  for (const sim::Scenario& scenario : plan.document().scenarios) {
-    sum.bytes += static_cast<double>(to_json(scenario).dump(1).size());
-  }
-  return sum;
 }
 
 }  // namespace server::sweep

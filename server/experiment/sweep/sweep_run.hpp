@@ -74,6 +74,14 @@ Rows run_sweep(const Plan& plan,
 struct Estimate {
   double cpu_time = 0;  // [s] if every run lasts until its time limit
   double bytes = 0;     // of the files
+  /// True if the time for measuring was over before each controller had driven its seconds: what is
+  /// missing is taken from those that had.
+  bool extrapolated = false;
+};
+struct EstimateOptions {
+  /// [s] wall time for the runs that are measured; a world under construction is finished.
+  double most_time = 10;
+  std::stop_token stop{};  // ends it at once; the sums are then too small
 };
 /// Measured by the first seconds of one run of each controller, in its first scenario, whatever
 /// its labels and parameters.

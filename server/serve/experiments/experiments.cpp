@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "server/experiment/sweep/sweep_run.hpp"
 #include "server/record/run_json.hpp"
 #include "server/serve/net/http.hpp"
 #include "server/serve/workers.hpp"
@@ -146,6 +145,18 @@ Experiments::Posted Experiments::post(const nlohmann::json& document,
   if (!posted.created) resume(posted.experiment->info().id);
   ring();
   return posted;
+}
+
+std::pair<sweep::Plan, sweep::Estimate> Experiments::estimate(const nlohmann::json& document,
+                                                              const std::stop_token& stop) {
+  const std::unique_lock alone(estimating_, std::try_to_lock);
+  if (!alone) {
+    throw net::HttpError(429, "Another estimate is being made. Try again in some seconds.");
+  }
+  sweep::Plan plan(sweep::document_from_json(document, library_, rules_.controllers));
+  plan.check();
+  const sweep::Estimate cost = sweep::estimate(plan, {.stop = stop});
+  return {std::move(plan), cost};
 }
 
 std::vector<ExperimentInfo> Experiments::list() const {

@@ -12,9 +12,11 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/experiment/pool.hpp"
+#include "server/experiment/sweep/sweep_run.hpp"
 #include "server/run/scenario_library.hpp"
 #include "server/serve/experiments/experiment.hpp"
 
@@ -51,6 +53,11 @@ class Experiments {
   /// run or there is no room for another.
   Posted post(const nlohmann::json& document, const std::string& key, const std::string& by);
 
+  /// What the experiment of a document would cost, and its plan. Checks everything as post() does.
+  /// One at a time: it takes some seconds of a core. Throws DocumentError, or net::HttpError 429.
+  std::pair<sweep::Plan, sweep::Estimate> estimate(const nlohmann::json& document,
+                                                   const std::stop_token& stop);
+
   /// The newest first.
   std::vector<ExperimentInfo> list() const;
   /// Throws net::HttpError 404.
@@ -84,6 +91,7 @@ class Experiments {
 
   const ExperimentRules rules_;
   const ScenarioLibrary& library_;
+  std::mutex estimating_{};
   mutable std::mutex mutex_{};  // before those of the experiments
   std::condition_variable_any wake_{};
   std::map<std::string, std::shared_ptr<Experiment>> all_{};  // by id

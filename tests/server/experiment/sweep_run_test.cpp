@@ -329,6 +329,35 @@ TEST_F(SweepRun, EstimatesFromTheFirstSeconds) {
   EXPECT_LT(cost.bytes, 24 * 5000.0);
 }
 
+TEST_F(SweepRun, AnEstimateMeasuresAControllerOnceAndEndsInTime) {
+  json slow = short_document();
+  slow.erase("sweep");
+  slow.erase("comparisons");
+  slow["physics"] = "bullet";
+  slow["controllers"] = {"original", "go_to_goal"};
+  for (int i = 0; i < 20; ++i) {
+    slow["controllers"].push_back({{"name", "strip"}, {"label", "strip " + std::to_string(i)}});
+  }
+  const Plan many = short_plan(slow);
+  const auto time_of = [&](const EstimateOptions& options, Estimate& cost) {
+    const auto begin = std::chrono::steady_clock::now();
+    cost = estimate(many, options);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  Estimate whole;
+  Estimate cut;
+  const double long_time = time_of({.most_time = 1000}, whole);
+  EXPECT_FALSE(whole.extrapolated);
+  EXPECT_LT(time_of({.most_time = 0.01}, cut), long_time);
+  EXPECT_TRUE(cut.extrapolated);
+  EXPECT_GT(cut.cpu_time, 0);
+  EXPECT_GT(cut.bytes, 0);
+  std::stop_source stop;
+  stop.request_stop();
+  Estimate none;
+  EXPECT_LT(time_of({.most_time = 1000, .stop = stop.get_token()}, none), long_time);
+}
+
 TEST_F(SweepRun, RunsWhoseRecordIsIncompleteFailAndAreMadeAgain) {
   make_folder(folder("whole"));
   make_folder(folder("out"));

@@ -264,6 +264,37 @@ TEST_F(ExperimentsTest, ADeletedOneTakesItsFilesWithItWhenItsRunsHaveEnded) {
   EXPECT_FALSE(fs::exists(folder() / id));
 }
 
+TEST_F(ExperimentsTest, OneEstimateIsMadeAtATimeAndEndsWithTheServer) {
+  Experiments experiments(rules(), library);
+  json slow = everlasting("slow");
+  for (int i = 0; i < 40; ++i) {
+    slow["scenarios"][0]["obstacles"].push_back(
+        {{"type", "cylinder"}, {"x", 3}, {"y", i}, {"radius", 0.1}});
+  }
+  std::stop_source stop;
+  std::thread first([&] {
+    for (bool made = false; !made;) {
+      try {
+        experiments.estimate(slow, stop.get_token());
+        made = true;
+      } catch (const net::HttpError&) {  // the other one's turn
+      }
+    }
+  });
+  bool refused = false;
+  for (int i = 0; i < 2000 && !refused; ++i) {
+    try {
+      experiments.estimate(document("other", 1), {});
+    } catch (const net::HttpError& e) {
+      refused = e.status() == 429;
+    }
+  }
+  EXPECT_TRUE(refused);
+  stop.request_stop();
+  first.join();
+  EXPECT_EQ(experiments.estimate(document("other", 1), {}).first.size(), 2U);
+}
+
 TEST_F(ExperimentsTest, AKeyBelongsToOneDocument) {
   Experiments experiments(rules(), library);
   const auto posted = experiments.post(document("a", 1), "key", "");
