@@ -183,6 +183,7 @@ void Experiment::resume() {
   const std::unique_lock lock = loaded();
   if (info_.state == ExperimentState::Running) return;
   if (!log_) open_log();
+  if (stop_.stop_requested()) stop_ = std::stop_source();
   if (at_work_ == 0) {
     for (const std::size_t i : sweep::runs_to_make(rows_)) rows_.erase(i);
     count();
@@ -205,6 +206,7 @@ bool Experiment::cancel() {
     return false;
   }
   enter(ExperimentState::Cancelled);
+  stop_.request_stop();
   close_log_if_idle();
   return true;
 }
@@ -223,6 +225,7 @@ std::optional<Experiment::Work> Experiment::next() {
   }
   missing_.pop_back();
   ++at_work_;
+  return Work{plan_, run, stop_.get_token(), lost_.contains(run)};
 }
 
 bool Experiment::next_is_alone() const {

@@ -67,7 +67,7 @@ class Experiments {
   void resume(const std::string& id);
   void pause(const std::string& id);
   void cancel(const std::string& id);
-  /// With its files; a run at work ends first.
+  /// With its files; its runs at work are stopped.
   void remove(const std::string& id);
 
   /// Gives back the memory of those that are neither running nor among the last looked at.
@@ -87,6 +87,7 @@ class Experiments {
   void work(const Turn& turn, const std::stop_token& stop);
   void ring();
   void drop(const std::string& id);
+  void await_removed(const std::string& id);
   static void delete_files(const Experiment& experiment);
 
   const ExperimentRules rules_;

@@ -264,6 +264,44 @@ TEST_F(ExperimentsTest, ADeletedOneTakesItsFilesWithItWhenItsRunsHaveEnded) {
   EXPECT_FALSE(fs::exists(folder() / id));
 }
 
+/// One run that would take hours.
+json everlasting(const char* name) {
+  json forever = document(name, 1, 9000);
+  forever["controllers"] = {"go_to_goal"};
+  forever.erase("comparisons");
+  forever["physics"] = "bullet";
+  forever["time_limit"] = 1e6;
+  return forever;
+}
+
+TEST_F(ExperimentsTest, ADeletedOneLeavesItsWorkerToTheOthersAndItsPlaceToANewOne) {
+  Experiments experiments({.folder = folder(), .workers = 1}, library);
+  const std::string id = experiments.post(everlasting("forever"), "", "").experiment->info().id;
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(comes([&] { return experiments.find(id)->at_work(); }));
+    experiments.remove(id);
+    EXPECT_TRUE(experiments.post(everlasting("forever"), "", "").created);
+  }
+  experiments.remove(id);
+  const auto next = experiments.post(document("next", 2), "", "");
+  EXPECT_TRUE(comes_to(*next.experiment, ExperimentState::Finished));
+}
+
+TEST_F(ExperimentsTest, ACancelledOneStopsItsRunWhichIsMadeAgainWhenResumed) {
+  Experiments experiments({.folder = folder(), .workers = 1}, library);
+  const std::shared_ptr<Experiment> forever =
+      experiments.post(everlasting("forever"), "", "").experiment;
+  const std::string id = forever->info().id;
+  ASSERT_TRUE(comes([&] { return forever->at_work(); }));
+  experiments.cancel(id);
+  ASSERT_TRUE(comes([&] { return !forever->at_work(); }));
+  EXPECT_EQ(forever->info().state, ExperimentState::Cancelled);
+  EXPECT_EQ(forever->info().done, 0U);
+  experiments.resume(id);
+  EXPECT_TRUE(comes([&] { return forever->at_work(); }));
+  EXPECT_EQ(forever->info().state, ExperimentState::Running);
+}
+
 TEST_F(ExperimentsTest, OneEstimateIsMadeAtATimeAndEndsWithTheServer) {
   Experiments experiments(rules(), library);
   json slow = everlasting("slow");
