@@ -74,6 +74,8 @@ void RunStore::open() {
   sql_.reset();
   connection_.reset();
   open_.clear();
+  // A file that was a run store may be a damaged one now.
+  if (!known_ || identity_of(path_) != known_) detail::refuse_other_files(path_);
   // Keeps the lock while the file is the same, so that no other writer can take it in between.
   if (!in_place()) {
     lock_.reset();

@@ -2,7 +2,11 @@
 #include "db/schema.hpp"
 
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <string>
+#include <string_view>
+#include <system_error>
 
 namespace db::detail {
 
@@ -14,6 +18,8 @@ constexpr std::int64_t kApplicationId = 0x5461754C;  // "TauL": distinguishes ou
 // version is not read. 8: layers in 16 bits. 9: adds kAdded.
 constexpr std::int64_t kVersion = 9;
 constexpr std::int64_t kMended = 8;  // brought up to date
+
+constexpr std::size_t kHeadBytes = 100;  // of a database
 
 // SI units throughout. A run with the same document as the previous one shares its row, which stays
 // as long as any run uses it: ten thousand repeats of a world would fill the store with copies.
@@ -116,13 +122,23 @@ std::int64_t version_of(const Connection& connection) {
   return connection.query_integer("PRAGMA user_version");
 }
 
-void refuse_foreign(const Connection& connection) {
+bool is_foreign(const Connection& connection) {
   const std::int64_t id = connection.query_integer("PRAGMA application_id");
-  if (id == kApplicationId) return;
-  if (id != 0 || connection.query_integer("SELECT count(*) FROM sqlite_master") != 0) {
-    throw StoreError("The file " + connection.path() +
-                     " is a database of another program; choose another file for the run store.");
-  }
+  if (id == kApplicationId) return false;
+  return id != 0 || connection.query_integer("SELECT count(*) FROM sqlite_master") != 0;
+}
+
+/// `fault`: what is wrong with it.
+[[noreturn]] void refuse_file(const std::string& path, const std::string& fault) {
+  throw DatabaseError(
+      "The file " + path + " is " + fault + "; choose another file for the run store.",
+      Trouble::Refused);
+}
+
+constexpr const char* kForeign = "a database of another program";
+
+void refuse_foreign(const Connection& connection) {
+  if (is_foreign(connection)) refuse_file(connection.path(), kForeign);
 }
 
 /// Refuses a file of a version before `oldest` or after this program's, unless it is empty.
@@ -142,7 +158,42 @@ void refuse_others(const Connection& connection, std::int64_t oldest) {
   }
 }
 
+/// The first bytes of a file, as many as there are.
+std::string head_of(const std::string& path) {
+  std::string head(kHeadBytes, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), kHeadBytes);
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  return head;
+}
+
+/// The application id in the head of a database, which is ours once its log was folded in.
+std::int64_t id_in(std::string_view head) {
+  constexpr std::size_t kAt = 68;  // https://www.sqlite.org/fileformat.html
+  std::int64_t id = 0;
+  for (const char byte : head.substr(kAt, 4)) id = 256 * id + static_cast<unsigned char>(byte);
+  return id;
+}
+
 }  // namespace
+
+void refuse_other_files(const std::string& path) {
+  constexpr std::string_view kMagic("SQLite format 3\0", 16);
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(path, none)) return;
+  const std::string head = head_of(path);
+  if (head.empty()) return;
+  if (!head.starts_with(kMagic) || head.size() < kHeadBytes) refuse_file(path, "not a database");
+  bool foreign = false;
+  try {
+    foreign = is_foreign(Connection(path, Connection::Mode::Read));  // changes no byte
+  } catch (const DatabaseError& error) {
+    if (error.trouble() == Trouble::Damaged && id_in(head) != kApplicationId) {
+      refuse_file(path, "damaged, or a database of another program");
+    }
+  }
+  if (foreign) refuse_file(path, kForeign);
+}
 
 void set_up(Connection& connection) {
   refuse_foreign(connection);

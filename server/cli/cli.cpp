@@ -54,6 +54,7 @@ void RunFlags::add_map_to(Command command) {
 
 RunOverrides RunFlags::resolved(const RobotLibrary& robots) const {
   RunOverrides out = overrides;
+  if (out.seed) overrides_from_json({{"seed", *out.seed}});  // has the limit of every seed
   out.controllers = controllers.catalogue();
   out.controller = controllers.chosen();
   if (!physics.empty()) out.physics = physics_named(physics, "--physics");

@@ -22,9 +22,7 @@ struct MergeCommand {
 };
 
 int merge(const MergeCommand& command) {
-  const std::filesystem::path first = std::filesystem::path(command.shards.front()) / "runs.jsonl";
-  const sweep::Plan plan =
-      plan_from(sweep::logged_document(first), first.string(), command.controllers.catalogue());
+  const sweep::Plan plan = plan_in(command.shards.front(), command.controllers.catalogue());
   const sweep::Merged merged =
       merge_shards(plan, command.out, {command.shards.begin(), command.shards.end()});
   write_scenarios(plan.document(), command.out);

@@ -17,9 +17,7 @@ struct ReportCommand {
 
 int report(const ReportCommand& command) {
   const std::string& folder = command.folder;
-  const std::filesystem::path file = std::filesystem::path(folder) / "runs.jsonl";
-  const sweep::Plan plan =
-      plan_from(sweep::logged_document(file), file.string(), command.controllers.catalogue());
+  const sweep::Plan plan = plan_in(folder, command.controllers.catalogue());
   return write_and_print(plan, sweep::open_log(plan, folder)->found(), folder);
 }
 

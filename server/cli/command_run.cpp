@@ -70,7 +70,9 @@ int execute(const RunCommand& options) {
   headless.pace = options.pace;
   headless.hash_frames = true;
   if (!options.out.empty()) {
-    recorder = std::make_unique<Recorder>(options.out, recorder_options());
+    RecorderOptions recording = recorder_options();
+    recording.when_full = "Make room on the disk, then make the run again.";
+    recorder = std::make_unique<Recorder>(options.out, std::move(recording));
     headless.record = recorder->open(headless_run(spec, robot->spec(), options.pace));
   }
   ProgressLine progress;
@@ -93,7 +95,7 @@ int execute(const RunCommand& options) {
     while (!recorder->flush() && !end_requested()) {
     }
     run_id = headless.record->run();
-    if (headless.record->failed()) problem = headless.record->problem();
+    problem = headless.record->failed() ? headless.record->problem() : headless.record->loss();
   }
   if (options.as_json) {
     json out = {{"scenario", spec.scenario.name},

@@ -71,6 +71,10 @@ int print_estimate(const sweep::Plan& plan) {
   fmt::print("CPU time  at most {}, if every run lasts until its time limit\n",
              duration_text(cost.cpu_time));
   fmt::print("files     about {}\n", bytes_text(cost.bytes));
+  if (cost.extrapolated) {
+    fmt::print(
+        "These runs are slow: both are guessed from the first seconds of some controllers.\n");
+  }
   return kReached;
 }
 
@@ -95,6 +99,8 @@ std::unique_ptr<Recorder> open_recorder(const std::string& folder) {
   make_folder(folder);
   RecorderOptions options = recorder_options();
   options.retention_bytes = 0;
+  options.when_full =
+      "Make room on the disk, then give the same command again: it makes the missing records.";
   return std::make_unique<Recorder>((std::filesystem::path(folder) / "runs.db").string(), options);
 }
 
@@ -112,13 +118,18 @@ sweep::Rows run(const sweep::Plan& plan, const SweepCommand& command) {
   };
   std::unique_ptr<Recorder> recorder;
   if (command.record != "nothing") recorder = open_recorder(command.out);
-  return run_sweep(
-      plan,
-      command.out,
-      pool,
-      wanted_runs(command.rerun),
-      [](const std::string& text) { fmt::print(stderr, "tautline: warning: {}\n", text); },
-      {recorder.get(), command.record == "failures"});
+  try {
+    return run_sweep(
+        plan,
+        command.out,
+        pool,
+        wanted_runs(command.rerun),
+        [](const std::string& text) { fmt::print(stderr, "tautline: warning: {}\n", text); },
+        {recorder.get(), command.record == "failures"});
+  } catch (const sweep::OtherExperiment& e) {
+    throw std::runtime_error(std::string(e.what()) +
+                             " Choose another folder with --out, or remove this one.");
+  }
 }
 
 /// Runs one shard and writes no report, which only the whole can have.

@@ -1,16 +1,21 @@
 // server/cli/options.cpp: passes everything on to CLI11.
 #include "server/cli/options.hpp"
 
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
 #include <optional>
+#include <string>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 namespace server {
 namespace {
@@ -34,6 +39,21 @@ std::string refuse_negative(const std::string& text) {
   const std::size_t begin = text.find_first_not_of(" \t");
   const bool negative = begin != std::string::npos && text[begin] == '-';
   return negative ? text + " must not be negative" : "";
+}
+
+/// CLI11 reads a number beyond its type as the last one of the type.
+template <typename Number>
+std::string refuse_too_large(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(" \t+");
+  const char* const end = text.data() + text.size();
+  Number number{};
+  if (begin == std::string::npos) return "";
+  const auto read = std::from_chars(text.data() + begin, end, number);
+  if (read.ec != std::errc::result_out_of_range) return "";
+  return fmt::format("{} must be from {} to {}",
+                     text,
+                     std::numeric_limits<Number>::min(),
+                     std::numeric_limits<Number>::max());
 }
 
 /// No comparison with the ends of a range refuses "nan".
@@ -108,6 +128,7 @@ template <typename T>
 Option Command::add_option(const std::string& names, T& variable, const std::string& help) const {
   const Option option(*app_->add_option(names, variable, help));
   using Number = typename Single<T>::Type;
+  if constexpr (std::is_integral_v<Number>) option.check(refuse_too_large<Number>);
   if constexpr (std::is_unsigned_v<Number>) return option.check(refuse_negative);
   if constexpr (std::is_floating_point_v<Number>) return option.check(refuse_not_finite);
   return option;

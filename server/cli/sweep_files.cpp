@@ -1,12 +1,15 @@
 // server/cli/sweep_files.cpp: from a document to a plan, from rows to files.
 #include "server/cli/sweep_files.hpp"
 
+#include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
 #include "server/experiment/sweep/sweep_report.hpp"
+#include "server/experiment/sweep/sweep_run.hpp"
 #include "server/experiment/sweep/sweep_tables.hpp"
 #include "server/run/paths.hpp"
 
@@ -25,6 +28,19 @@ sweep::Plan plan_from(const nlohmann::json& document,
   } catch (const DocumentError& e) {
     throw std::runtime_error(fmt::format("{}: {}", file, e.what()));
   }
+}
+
+sweep::Plan plan_in(const std::filesystem::path& folder,
+                    std::shared_ptr<const algo::ControllerCatalogue> controllers) {
+  const std::filesystem::path log = folder / "runs.jsonl";
+  const nlohmann::json document = sweep::logged_document(log);
+  try {
+    std::optional<sweep::Document> kept = sweep::document_in(folder, document, controllers);
+    if (kept) return sweep::Plan(std::move(*kept));
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error(fmt::format("{}: {}", folder.string(), e.what()));
+  }
+  return plan_from(document, log.string(), std::move(controllers));  // only the log was copied
 }
 
 int write_and_print(const sweep::Plan& plan, const sweep::Rows& rows, const std::string& folder) {

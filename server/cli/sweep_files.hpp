@@ -1,6 +1,7 @@
 // server/cli/sweep_files.hpp: what `sweep` and `report` share: a checked plan, and the files.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -16,6 +17,11 @@ namespace server {
 sweep::Plan plan_from(const nlohmann::json& document,
                       const std::string& file,
                       std::shared_ptr<const algo::ControllerCatalogue> controllers);
+
+/// The plan of an experiment that `tautline sweep` left in `folder`, with the scenarios and robots
+/// as they were then. Throws std::runtime_error naming the file.
+sweep::Plan plan_in(const std::filesystem::path& folder,
+                    std::shared_ptr<const algo::ControllerCatalogue> controllers);
 
 /// Writes the report to `folder` and prints the rates. Returns the exit status: 0, 1 if a run
 /// failed, 4 if only runs are missing.

@@ -13,13 +13,6 @@
 namespace server::experiment {
 namespace {
 
-/// [s] CPU time of this thread: other load on the machine does not count.
-double cpu_time() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
 /// Stands before a robot and times each control tick: from the observation to the call of
 /// ground_truth(), which the loop makes right after the tick.
 class TimedRobot final : public ForwardingRobot {
@@ -101,6 +94,12 @@ double Row::operator[](std::string_view column) const {
     throw std::out_of_range(fmt::format("no judge wrote '{}'", column));
   }
   return found->second;
+}
+
+double cpu_time() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 Row run_trial(const Trial& trial, const TrialOptions& options) {

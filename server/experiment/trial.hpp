@@ -59,6 +59,9 @@ struct TrialOptions {
   std::function<bool()> cancelled{};  // as in HeadlessOptions
 };
 
+/// [s] CPU time of this thread: other load on the machine does not count.
+double cpu_time();
+
 /// Throws std::exception with a sentence if the robot or a judge cannot be made, and any exception
 /// of `record`. If the run itself breaks, the row says Failed, with the reason.
 Row run_trial(const Trial& trial, const TrialOptions& options = {});

@@ -300,6 +300,7 @@ void Recorder::keep(RunChannel& channel, const RecordedFrame& frame, bool after_
   if (ailment_ || (full_ && !last_of_whole(channel))) {
     channel.missing_ = {.cause = ailment_ ? db::GapCause::Failed : db::GapCause::Full,
                         .sentence = without_folder(ailment_ ? ailment_->sentence : *full_)};
+    channel.lose(channel.missing_->sentence);
     return;
   }
   guarded([&] {
@@ -307,7 +308,7 @@ void Recorder::keep(RunChannel& channel, const RecordedFrame& frame, bool after_
       resume(channel);
       const std::uint64_t tick = frame.tick();
       if (tick > channel.next_tick_) {
-        store_.note_gap(channel.run(), channel.gap_until(tick, after_pause));
+        note_gap(channel, tick, after_pause);
       }
       store_.append_tick(channel.run(), tick, frame.time(), frame.bytes(), frame.windows());
       uncommitted_ += frame.bytes().size();
@@ -319,12 +320,20 @@ void Recorder::keep(RunChannel& channel, const RecordedFrame& frame, bool after_
       // A frame that cannot be stored ends the record of its own run only.
       channel.broken_ = true;
       channel.fail(error.what());
+      channel.lose(error.what());
       report(error.what());
       store_.end_run(
           channel.run(),
           {.status = db::RunStatus::Failed, .outcome = "failed", .reason = error.what()});
     }
   });
+}
+
+/// Stores the gap after the run's last stored tick and before `tick`.
+void Recorder::note_gap(RunChannel& channel, std::uint64_t tick, bool paused) {
+  const db::Gap gap = channel.gap_until(tick, paused);
+  if (gap.cause != db::GapCause::Pause) channel.lose(gap.sentence);
+  store_.note_gap(channel.run(), gap);
 }
 
 /// Resumes a run that the store does not record now, in its row or, if that is gone, in a new one.
@@ -346,7 +355,7 @@ bool Recorder::end(RunChannel& channel, const db::RunEnd& end, std::uint64_t tic
     if (ended || ailment_) return;
     resume(channel);
     if (ticks > channel.next_tick_) {
-      store_.note_gap(channel.run(), channel.gap_until(ticks, channel.paused_));
+      note_gap(channel, ticks, channel.paused_);
     }
     store_.end_run(channel.run(), end);
     store_.commit();

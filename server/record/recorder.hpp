@@ -79,6 +79,10 @@ struct RecorderOptions {
   /// Without room, a run to be kept whole waits until room is made. Otherwise it goes on with a
   /// gap.
   bool wait_for_room = true;
+  /// What a person can do about a full record, as a sentence.
+  std::string when_full =
+      "Finished runs are never deleted unasked, so nothing more is recorded: delete runs, or start "
+      "the server with a larger --keep or with --evict oldest.";
   /// How long a deleted run can be restored, if there is room.
   std::chrono::seconds trash_time = std::chrono::minutes(10);
   double live_span = 3600;  // [s] run clock; the span kept of a live run
@@ -182,6 +186,7 @@ class Recorder {
   void take_frames(std::size_t most = SIZE_MAX);
   void take_frames(RunChannel& channel, std::size_t most = SIZE_MAX);
   void keep(RunChannel& channel, const RecordedFrame& frame, bool after_pause);
+  void note_gap(RunChannel& channel, std::uint64_t tick, bool paused);
   void resume(RunChannel& channel);
   bool last_of_whole(const RunChannel& channel) const;
   bool waits(const RunChannel& channel) const;

@@ -24,15 +24,6 @@ constexpr std::chrono::minutes kSetAsideAgain{1};
 constexpr std::size_t kMostNews = 100;
 // [bytes] that must be free before a store that filled its disk is opened again.
 constexpr std::uint64_t kToWorkWith = std::uint64_t{4} << 20;
-constexpr std::uintmax_t kPage = 4096;
-
-/// True if a file that is no database may have been one. A text file given by mistake is hardly
-/// ever a whole number of pages long.
-bool was_database(const std::string& path) {
-  std::error_code error;
-  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
-  return !error && bytes > 0 && bytes % kPage == 0;
-}
 
 }  // namespace
 
@@ -40,8 +31,7 @@ void Recorder::open_store() {
   try {
     store_.open();
   } catch (const db::DatabaseError& error) {
-    const bool damaged = error.trouble() == db::Trouble::Damaged;
-    if (error.trouble() == db::Trouble::Refused || (damaged && !was_database(store_.path()))) throw;
+    if (error.trouble() == db::Trouble::Refused) throw;
     note_trouble(error);
     recover();
   }

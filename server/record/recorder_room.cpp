@@ -145,10 +145,9 @@ void Recorder::judge_room(bool more_to_come) {
                                               static_cast<double>(used_) / kMegabyte,
                                               static_cast<double>(limit) / kMegabyte)
                                 : std::string("The disk under the record is almost full.");
-    full_ = why +
-            " Finished runs are never deleted unasked, so nothing more is recorded: delete"
-            " runs, or start the server with a larger --keep or with --evict oldest.";
+    full_ = why + ' ' + options_.when_full;
     for (const auto& channel : channels_) channel->fail(*full_);
+    publish();  // before takes_more(): whoever sees that reads the reason
     takes_more_ = false;
     report(*full_);
   }

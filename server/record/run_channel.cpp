@@ -89,6 +89,16 @@ void RunChannel::recover() {
   if (!broken_) failed_.store(false, std::memory_order_release);
 }
 
+std::string RunChannel::loss() const {
+  const std::lock_guard lock(mutex_);
+  return loss_;
+}
+
+void RunChannel::lose(const std::string& why) {
+  const std::lock_guard lock(mutex_);
+  if (loss_.empty()) loss_ = why;
+}
+
 RecordStatus RunChannel::status() const {
   const std::lock_guard lock(mutex_);
   return status_;

@@ -130,6 +130,8 @@ class RunChannel {
   /// True while frames are not recorded; problem() then says why, as a sentence.
   bool failed() const noexcept { return failed_.load(std::memory_order_acquire); }
   std::string problem() const;
+  /// Why ticks of the run are missing for good, as a sentence; empty: none are missing so far.
+  std::string loss() const;
   /// State of this run's record as of the last commit; before the first one, `kind` is Off.
   RecordStatus status() const;
 
@@ -142,6 +144,7 @@ class RunChannel {
 
   void fail(const std::string& why);  // database thread
   void recover();                     // database thread
+  void lose(const std::string& why);  // database thread; the first reason stays
   bool tell(RecordStatus status);     // database thread; true if the status changed
   db::Gap gap_until(std::uint64_t tick, bool paused) const;
 
@@ -168,6 +171,7 @@ class RunChannel {
   std::atomic<bool> closed_ = false;
   mutable std::mutex mutex_{};
   std::string problem_{};  // guarded by mutex_
+  std::string loss_{};     // guarded by mutex_
   RecordStatus status_{};  // guarded by mutex_
   std::atomic<bool> failed_ = false;
   std::atomic<bool> over_ = false;  // the ring is no longer emptied

@@ -31,11 +31,13 @@ bool RunQueue::Batch::hold(std::size_t document_bytes) {
 
 RunQueue::RunQueue(Recorder& recorder, unsigned threads)
     : recorder_(recorder),
-      pool_(threads, [this](const std::stop_token& stop) { return take(stop); }) {}
+      fast_(threads, [this](const auto& stop) { return take(Kind::AsFastAsItGoes, stop); }),
+      paced_(threads, [this](const auto& stop) { return take(Kind::Paced, stop); }) {}
 
 RunQueue::~RunQueue() {
   stop();
-  pool_.request_stop();
+  fast_.request_stop();
+  paced_.request_stop();
   {
     const std::lock_guard lock(mutex_);
     for (const auto& [run, running] : running_) running->stop.request_stop();
@@ -212,20 +214,27 @@ std::string RunQueue::requeue(db::RunStore& store, db::RunId run) {
   }
 }
 
-/// The next run of the queue as a job. Waits for a run, and for a store that takes it.
-experiment::Pool::Job RunQueue::take(const std::stop_token& stop) {
+/// Holds mutex_.
+std::deque<RunQueue::Job>::iterator RunQueue::first_of(Kind kind) {
+  return std::ranges::find_if(
+      queue_, [&](const Job& job) { return (job.batch->asked.pace > 0) == (kind == Kind::Paced); });
+}
+
+/// The next run of that kind as a job. Waits for a run, and for a store that takes it.
+experiment::Pool::Job RunQueue::take(Kind kind, const std::stop_token& stop) {
   give_way();
   std::unique_lock lock(mutex_);
   while (true) {
-    wake_.wait(lock, stop, [this] { return !queue_.empty(); });
+    wake_.wait(lock, stop, [&] { return first_of(kind) != queue_.end(); });
     // If the store does not take it, a run would end and nobody could see its result.
     while (!stop.stop_requested() && !recorder_.takes_more()) {
       wake_.wait_for(lock, stop, kStoreRetry, [] { return false; });
     }
     if (stop.stop_requested()) return {};
-    if (queue_.empty()) continue;  // its run was cancelled meanwhile
-    Job job = std::move(queue_.front());
-    queue_.pop_front();
+    const auto next = first_of(kind);
+    if (next == queue_.end()) continue;  // its run was cancelled meanwhile
+    Job job = std::move(*next);
+    queue_.erase(next);
     auto running = std::make_shared<Running>();
     running_[job.run] = running;
     return [this, job = std::move(job), running = std::move(running), stop] {

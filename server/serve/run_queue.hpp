@@ -25,10 +25,11 @@ struct RepeatedRun {
   double pace = 0;            // times real time; 0 = as fast as possible
 };
 
-/// Queues runs in the database and runs them on its own pool, as trials without judges, so that
-/// neither the io thread nor a live robot waits. The queue waits while the store accepts no runs;
-/// its runs can still be cancelled. A restart leaves them `interrupted`; resume() queues them
-/// again.
+/// Queues runs in the database and runs them on its own pools, as trials without judges, so that
+/// neither the io thread nor a live robot waits. Paced runs mostly sleep, some of them for hours:
+/// they have threads of their own, and the others need not wait for them. The queue waits while the
+/// store accepts no runs; its runs can still be cancelled. A restart leaves them `interrupted`;
+/// resume() queues them again.
 class RunQueue {
  public:
   using Accepted =
@@ -38,8 +39,8 @@ class RunQueue {
   /// [bytes] of all queued worlds; repeats share one world.
   static constexpr std::size_t kMaxBytes = std::size_t{192} << 20;
 
-  /// One thread by default, which leaves a core to the io thread, which carries Stop, and to live
-  /// robots.
+  /// `threads`: for paced runs, and as many for the others. One by default, which leaves a core to
+  /// the io thread, which carries Stop, and to live robots.
   explicit RunQueue(Recorder& recorder, unsigned threads = 1);
   ~RunQueue();  // interrupts current runs; queued runs stay in the database
 
@@ -101,7 +102,9 @@ class RunQueue {
   void arrived(std::size_t runs);
   static std::string requeue(db::RunStore& store, db::RunId run);
   static RunSpec spec_of(const Job& job);
-  experiment::Pool::Job take(const std::stop_token& stop);
+  enum class Kind : bool { AsFastAsItGoes, Paced };
+  std::deque<Job>::iterator first_of(Kind kind);
+  experiment::Pool::Job take(Kind kind, const std::stop_token& stop);
   void work_off(const Job& job, Running& running, const std::stop_token& stop);
   bool execute(const Job& job, Running& running);
   void end_later(db::RunId run, db::RunEnd end);
@@ -114,7 +117,8 @@ class RunQueue {
   std::size_t arriving_ = 0;  // accepted runs not yet in the queue
   bool stopping_ = false;
   std::map<db::RunId, std::shared_ptr<Running>> running_{};
-  experiment::Pool pool_;  // last: it uses all of the above
+  experiment::Pool fast_;  // last, both: they use all of the above
+  experiment::Pool paced_;
 };
 
 }  // namespace server

@@ -49,7 +49,7 @@ void Workers::stop() {
 
 void Workers::work(const std::stop_token& stop, const std::string& database) {
   give_way();
-  Worker worker(database);
+  Worker worker(database, stop);
   while (true) {
     Job job;
     {

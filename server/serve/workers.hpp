@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
@@ -19,7 +20,11 @@ namespace server {
 /// The worker thread as seen by a job.
 class Worker {
  public:
-  explicit Worker(std::string database) : database_(std::move(database)) {}
+  explicit Worker(std::string database, std::stop_token stop = {})
+      : database_(std::move(database)), stop_(std::move(stop)) {}
+
+  /// Asks a long job to end, because the server does.
+  const std::stop_token& stop() const { return stop_; }
 
   /// This thread's own reader of the run store. Opens it at first use, and again when another file
   /// has replaced the store. Throws db::StoreError.
@@ -27,6 +32,7 @@ class Worker {
 
  private:
   std::string database_;
+  std::stop_token stop_;
   std::unique_ptr<db::RunReader> reader_{};
   std::uint64_t device_ = 0;  // of the open file
   std::uint64_t inode_ = 0;

@@ -1,6 +1,11 @@
 // tests/db/schema_test.cpp: databases of older and newer versions.
 #include "db/schema.hpp"
 
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
 #include "tests/db/store_files.hpp"
 #include <gmock/gmock.h>
 
@@ -16,6 +21,11 @@ class SchemaTest : public test::StoreFiles {
  protected:
   std::int64_t ask(const std::string& sql) {
     return Connection(path, Connection::Mode::Write).query_integer(sql);
+  }
+  std::string bytes() const {
+    std::stringstream all;
+    all << std::ifstream(path, std::ios::binary).rdbuf();
+    return all.str();
   }
 };
 
@@ -130,8 +140,15 @@ TEST_F(SchemaTest, ANewerDatabaseIsRefusedUntouched) {
 
 TEST_F(SchemaTest, AnotherProgramsDatabaseIsRefusedUntouched) {
   Connection(path, Connection::Mode::Write).execute("CREATE TABLE bookmark (url TEXT)");
+  const std::string before = bytes();
   EXPECT_THAT(refusal([&] { const RunStore store(path); }), HasSubstr("another program"));
-  EXPECT_EQ(ask("SELECT count(*) FROM sqlite_master"), 1);
+  EXPECT_EQ(bytes(), before);
+  // One that is damaged is no store of ours either.
+  Connection(path, Connection::Mode::Write).execute("INSERT INTO bookmark VALUES ('a'), ('b')");
+  std::filesystem::resize_file(path, 2048);
+  const std::string cut = bytes();
+  EXPECT_THAT(refusal([&] { const RunStore store(path); }), HasSubstr("another program"));
+  EXPECT_EQ(bytes(), cut);
 }
 
 TEST_F(SchemaTest, WritesDurably) {

@@ -201,11 +201,9 @@ std::size_t RunLog::read(const json& identity) {
 void RunLog::check_head(std::string_view line, const json& identity) const {
   const json head = head_from(line, file_);
   if (head["sweep"] == hash_of(identity)) return;
-  throw std::runtime_error(
-      fmt::format("{}: holds the runs of another experiment: {}. Choose another folder with "
-                  "--out, or remove this one.",
-                  file_.string(),
-                  difference(head["identity"], identity)));
+  throw OtherExperiment(fmt::format("{}: holds the runs of another experiment: {}.",
+                                    file_.string(),
+                                    difference(head["identity"], identity)));
 }
 
 void RunLog::read_line(std::string_view line) {

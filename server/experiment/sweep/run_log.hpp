@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -18,6 +19,12 @@
 
 namespace server::sweep {
 
+/// A file holds the runs of another document, or of another version of the program.
+class OtherExperiment : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// Lines of JSON: first the identity of the experiment and its hash, then one for each run that
 /// begins, {"begun": 7}, and one for its end: its row, or {"left": 7} if it was stopped. A run that
 /// begins and has no end was under way when the program died. A killed program leaves at most one
@@ -26,8 +33,8 @@ namespace server::sweep {
 /// processes out.
 class RunLog {
  public:
-  /// Opens or begins `file` for the runs of `plan_size`. Throws std::runtime_error with a sentence
-  /// if it belongs to another experiment, is damaged, or cannot be written.
+  /// Opens or begins `file` for the runs of `plan_size`. Throws OtherExperiment, or
+  /// std::runtime_error with a sentence if the file is damaged or cannot be written.
   RunLog(const std::filesystem::path& file, const nlohmann::json& identity, std::size_t plan_size);
 
   /// Notes that the runs under way were stopped.

@@ -3,6 +3,7 @@
 #include "server/experiment/sweep/sweep_document.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <set>
 #include <utility>
 
@@ -183,13 +184,14 @@ std::size_t Document::runs() const {
   return runs;
 }
 
-Document document_from_json(const json& source,
-                            const ScenarioLibrary& library,
-                            std::shared_ptr<const algo::ControllerCatalogue> controllers,
-                            Files files) {
-  const JsonReader in(source, "");
+namespace {
+
+/// All but the scenarios. `count` counts those, before anything is made.
+Document without_scenarios(const JsonReader& in,
+                           std::shared_ptr<const algo::ControllerCatalogue> controllers,
+                           const std::function<double()>& count) {
   in.only(kFields);
-  Document document{.source = source};
+  Document document{.source = in.raw()};
   document.name = in.text("name", 64);
   if (!valid_name(document.name)) {
     in.fail("name", "must be 1 to 64 of the characters a-z, 0-9, _ and -");
@@ -205,11 +207,34 @@ Document document_from_json(const json& source,
   }
   const Design design = design_from_json(in);
   check_sweep(design, document);
-  check_count(count_scenarios(in, files), design.size(), document);
+  check_count(count(), design.size(), document);
   document.points = design.points();
+  return document;
+}
+
+}  // namespace
+
+Document document_from_json(const json& source,
+                            const ScenarioLibrary& library,
+                            std::shared_ptr<const algo::ControllerCatalogue> controllers,
+                            Files files) {
+  const JsonReader in(source, "");
+  Document document =
+      without_scenarios(in, std::move(controllers), [&] { return count_scenarios(in, files); });
   document.scenarios = scenarios_from_json(in, library, files);
   check_drivers(document);
   override_scenarios(in, document.scenarios);
+  return document;
+}
+
+Document document_with(const json& source,
+                       std::vector<sim::Scenario> scenarios,
+                       std::shared_ptr<const algo::ControllerCatalogue> controllers) {
+  Document document = without_scenarios(JsonReader(source, ""), std::move(controllers), [&] {
+    return static_cast<double>(scenarios.size());
+  });
+  document.scenarios = std::move(scenarios);
+  check_drivers(document);
   return document;
 }
 

@@ -71,4 +71,10 @@ Document document_from_json(const nlohmann::json& source,
                             std::shared_ptr<const algo::ControllerCatalogue> controllers = {},
                             Files files = Files::Refused);
 
+/// As document_from_json(), for scenarios that have been read before, and have what the document
+/// sets in place of their own values.
+Document document_with(const nlohmann::json& source,
+                       std::vector<sim::Scenario> scenarios,
+                       std::shared_ptr<const algo::ControllerCatalogue> controllers = {});
+
 }  // namespace server::sweep

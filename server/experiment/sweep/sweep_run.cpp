@@ -2,15 +2,16 @@
 #include "server/experiment/sweep/sweep_run.hpp"
 
 #include <algorithm>
-#include <ctime>
 #include <exception>
-#include <map>
+#include <sstream>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "server/experiment/track.hpp"
 #include "server/record/run_json.hpp"
 #include "server/run/json_limits.hpp"
+#include "server/run/map_file.hpp"
 #include "server/run/scenario_json.hpp"
 #include "server/run/text_file.hpp"
 
@@ -20,33 +21,43 @@ namespace {
 namespace fs = std::filesystem;
 using experiment::Row;
 
-constexpr double kMeasured = 5;       // [s] of the run clock
-constexpr double kCsvPerLogLine = 1;  // a run has about as many bytes in runs.csv as in the log
+constexpr const char* kOrder = "scenarios/order.txt";  // names in the document's order, one a line
 
-/// [s] of CPU per second of the run clock, and the bytes of a run's line.
-struct Cost {
-  double cpu_time = 0;
-  double bytes = 0;
-};
-
-Cost measured(experiment::Trial trial) {
-  double& limit = trial.spec.scenario.time_limit;
-  limit = std::min(time_limit(trial.spec), kMeasured);
-  const std::clock_t begin = std::clock();
-  Row row = run_trial(trial);
-  row.track_W = experiment::coarse(row.track_W);
-  const double spent = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-  return {spent / std::max(row["time_s"], trial.spec.scenario.period),
-          static_cast<double>(dump_json(row_json(0, row)).size() + 1)};
+/// Throws std::runtime_error if ticks of the run are not stored. Null: it was not to be recorded.
+void check_record(const RunChannel* record) {
+  if (record == nullptr) return;
+  const std::string problem = record->failed() ? record->problem() : record->loss();
+  if (problem.empty()) return;
+  throw std::runtime_error("The record of this run is incomplete. " + problem);
 }
 
 }  // namespace
 
 void write_scenarios(const Document& document, const fs::path& folder) {
   make_folder(folder / "scenarios");
+  std::string order;
   for (const sim::Scenario& scenario : document.scenarios) {
     write_text(folder / scenario_file(scenario), to_json(scenario).dump(1) + "\n");
+    order += scenario.name + '\n';
+    const fs::path map(scenario.map);
+    if (map.has_parent_path()) write_map(read_map(map), folder / "scenarios" / map.filename());
   }
+  replace_text(folder / kOrder, order);
+}
+
+std::optional<Document> document_in(const fs::path& folder,
+                                    const nlohmann::json& source,
+                                    std::shared_ptr<const algo::ControllerCatalogue> controllers) {
+  std::error_code missing;
+  if (!fs::exists(folder / kOrder, missing)) return std::nullopt;
+  std::vector<sim::Scenario> scenarios;
+  std::istringstream names(read_text(folder / kOrder));
+  for (std::string name; std::getline(names, name);) {
+    const fs::path file = folder / scenario_file({.name = name});
+    if (!fs::exists(file, missing)) return std::nullopt;
+    scenarios.push_back(ScenarioLibrary::from_file(file));
+  }
+  return document_with(source, std::move(scenarios), std::move(controllers));
 }
 
 std::unique_ptr<RunLog> open_log(const Plan& plan, const fs::path& folder) {
@@ -73,9 +84,14 @@ Row run_one(const Plan& plan,
             const Recording& recording) {
   try {
     const experiment::Trial trial = plan.trial(i);
+    std::shared_ptr<RunChannel> record;
     const experiment::TrialOptions recorded{
         .stop = stop, .record = [&](const algo::RobotSpec& robot) {
-          return recording.recorder->open(headless_run(trial.spec, robot, 0));
+          if (!recording.recorder->takes_more()) {
+            throw std::runtime_error("The run cannot be recorded. " +
+                                     recording.recorder->status().sentence);
+          }
+          return record = recording.recorder->open(headless_run(trial.spec, robot, 0));
         }};
     const bool all = recording.recorder != nullptr && !recording.failures_only;
     Row row = run_trial(trial, all ? recorded : experiment::TrialOptions{.stop = stop});
@@ -86,6 +102,7 @@ Row run_one(const Plan& plan,
     while (recording.recorder != nullptr && !recording.recorder->flush() &&
            !stop.stop_requested()) {  // waits for a store that is locked, or without room
     }
+    if (row.outcome != algo::Outcome::Stopped) check_record(record.get());
     row.track_W = experiment::coarse(row.track_W);
     return row;
   } catch (const std::exception& e) {
@@ -129,27 +146,6 @@ Rows run_sweep(const Plan& plan,
   make(0, alone, 1);
   if (!options.stop.stop_requested()) make(alone, others.size(), options.threads);
   return rows;
-}
-
-Estimate estimate(const Plan& plan) {
-  Estimate sum;
-  std::map<std::size_t, Cost> costs;  // by controller
-  for (std::size_t i = 0; i < plan.size();) {
-    const experiment::Trial trial = plan.trial(i);
-    const RunPlace at = plan.place(i);
-    const auto repeats = static_cast<double>(plan.repeats(at.scenario, at.arm));
-    const std::size_t controller = plan.arms()[at.arm].controller;
-    const auto known = costs.find(controller);
-    const Cost cost = known != costs.end() ? known->second : measured(trial);
-    costs.emplace(controller, cost);
-    sum.cpu_time += repeats * cost.cpu_time * time_limit(trial.spec);
-    sum.bytes += repeats * cost.bytes * (1 + kCsvPerLogLine);
-    i += plan.repeats(at.scenario, at.arm);
-  }
-  for (const sim::Scenario& scenario : plan.document().scenarios) {
-    sum.bytes += static_cast<double>(to_json(scenario).dump(1).size());
-  }
-  return sum;
 }
 
 }  // namespace server::sweep

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <set>
 #include <stop_token>
 #include <string>
@@ -19,9 +20,17 @@
 
 namespace server::sweep {
 
-/// Writes each scenario to `folder`, so that `tautline run` can repeat a run. Throws
-/// std::runtime_error with a sentence.
+/// Writes each scenario to `folder`, with its robot and its map, and their order: `tautline run`
+/// can repeat a run from there, and document_in() reads them. Throws std::runtime_error with a
+/// sentence.
 void write_scenarios(const Document& document, const std::filesystem::path& folder);
+/// The experiment `source` with the scenarios that write_scenarios() left in `folder`, whatever has
+/// become of the scenarios and robots that it names. Nothing if they or their order are missing.
+/// Throws std::runtime_error with a sentence.
+std::optional<Document> document_in(
+    const std::filesystem::path& folder,
+    const nlohmann::json& source,
+    std::shared_ptr<const algo::ControllerCatalogue> controllers = {});
 /// The finished runs of `plan` in `folder`. Throws as RunLog's constructor.
 std::unique_ptr<RunLog> open_log(const Plan& plan, const std::filesystem::path& folder);
 /// Which runs a sweep makes.
@@ -41,8 +50,8 @@ struct Recording {
   Recorder* recorder = nullptr;
   bool failures_only = false;  // those that do not reach; each is made once more with its record
 };
-/// The row of a run: Failed with the reason if it breaks, Stopped after a stop. Its record is
-/// stored when this returns.
+/// The row of a run: Failed with the reason if it breaks or its record is incomplete, Stopped after
+/// a stop. Its record is stored when this returns.
 experiment::Row run_one(const Plan& plan,
                         std::size_t i,
                         const std::stop_token& stop,
@@ -65,8 +74,17 @@ Rows run_sweep(const Plan& plan,
 struct Estimate {
   double cpu_time = 0;  // [s] if every run lasts until its time limit
   double bytes = 0;     // of the files
+  /// True if the time for measuring was over before each controller had driven its seconds: what is
+  /// missing is taken from those that had.
+  bool extrapolated = false;
 };
-/// Measured by the first seconds of one run of each controller, in the first scenario.
-Estimate estimate(const Plan& plan);
+struct EstimateOptions {
+  /// [s] wall time for the runs that are measured; a world under construction is finished.
+  double most_time = 10;
+  std::stop_token stop{};  // ends it at once; the sums are then too small
+};
+/// Measured by the first seconds of one run of each controller, in its first scenario, whatever
+/// its labels and parameters.
+Estimate estimate(const Plan& plan, const EstimateOptions& options = {});
 
 }  // namespace server::sweep

@@ -24,8 +24,9 @@ void add_api(net::Router& router, ApiContext& context) {
   add_experiment_run_routes(routes);
   add_system_routes(routes);
   take_described_queries(router);
-  // The record and the scenarios know no owners: deleting what others have made is for admins.
-  for (const char* path : {"/runs/{id}", "/scenarios/{name}", "/sessions/{session}"}) {
+  // Nothing has an owner: deleting what others have made is for admins.
+  for (const char* path :
+       {"/runs/{id}", "/experiments/{id}", "/scenarios/{name}", "/sessions/{session}"}) {
     router.need("DELETE", std::string("/api/v1") + path, net::Role::Admin);
   }
   router.need("POST", "/api/v1/runs/delete", net::Role::Admin);

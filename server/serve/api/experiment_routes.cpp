@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "server/experiment/judge.hpp"
-#include "server/experiment/sweep/sweep_run.hpp"
 #include "server/run/json_limits.hpp"
 #include "server/run/json_reader.hpp"
 #include "server/serve/api/api.hpp"
@@ -65,11 +64,8 @@ net::Response post_experiment(ApiContext& context, const net::Request& request, 
 }
 
 /// Checks everything as POST /experiments does and runs a few seconds of each controller.
-net::Response post_estimate(ApiContext& context, const net::Request& request, Worker&) {
-  const sweep::Plan plan(
-      sweep::document_from_json(body_json(request), context.library, context.first.controllers));
-  plan.check();
-  const sweep::Estimate cost = estimate(plan);
+net::Response post_estimate(ApiContext& context, const net::Request& request, Worker& worker) {
+  const auto [plan, cost] = context.experiments.estimate(body_json(request), worker.stop());
   const sweep::Document& document = plan.document();
   return json_response(200,
                        {{"name", document.name},
@@ -79,7 +75,8 @@ net::Response post_estimate(ApiContext& context, const net::Request& request, Wo
                         {"settings", document.points.size()},
                         {"seeds", document.most_repeats()},
                         {"cpu_time", cost.cpu_time},
-                        {"bytes", cost.bytes}});
+                        {"bytes", cost.bytes},
+                        {"extrapolated", cost.extrapolated}});
 }
 
 net::Response get_experiment(ApiContext& context, const net::Request& request, Worker&) {

@@ -51,6 +51,12 @@ RepeatedRun repeated_run_from_json(const ApiContext& context, const json& body) 
       make_spec(context.library.placed(std::move(scenario)), overrides, context.library.robots());
   asked.repeats = static_cast<std::uint32_t>(in.whole_or("repeats", 1, kMaxRepeats));
   if (asked.repeats == 0) in.fail("repeats", "must be at least 1");
+  try {
+    overrides_from_json(
+        {{"seed", asked.spec.seed + asked.repeats - 1}});  // the limit of every seed
+  } catch (const DocumentError& e) {
+    throw DocumentError("repeats", fmt::format("the last run's {}", e.what()));
+  }
   asked.pace = pace_from_json(body, "pace", 0);
   return asked;
 }

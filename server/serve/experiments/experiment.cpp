@@ -103,8 +103,8 @@ ExperimentInfo Experiment::info() const {
   return info;
 }
 
-/// Reads the plan and the finished runs. The scenarios are those of the folder: the library's may
-/// be others by now.
+/// Reads the plan and the finished runs. The scenarios and robots are those of the folder: the
+/// library's may be others by now.
 void Experiment::load() {
   const std::lock_guard loading(loading_);
   {
@@ -114,9 +114,13 @@ void Experiment::load() {
   std::shared_ptr<const sweep::Plan> plan;
   sweep::Rows rows;
   try {
-    const ScenarioLibrary library(folder_ / "scenarios", {}, robots_);
-    plan = std::make_shared<const sweep::Plan>(sweep::document_from_json(
-        parse_json(read_text(folder_ / "document.json"), kOwnDocument), library, controllers_));
+    const json source = parse_json(read_text(folder_ / "document.json"), kOwnDocument);
+    std::optional<sweep::Document> document = sweep::document_in(folder_, source, controllers_);
+    if (!document) {  // begun before the order of the copies was kept
+      const ScenarioLibrary library(folder_ / "scenarios", {}, robots_);
+      document = sweep::document_from_json(source, library, controllers_);
+    }
+    plan = std::make_shared<const sweep::Plan>(std::move(*document));
     rows = sweep::open_log(*plan, folder_)->found();
   } catch (const std::exception& e) {
     throw net::HttpError(409, without_folders(e.what()));
@@ -179,6 +183,7 @@ void Experiment::resume() {
   const std::unique_lock lock = loaded();
   if (info_.state == ExperimentState::Running) return;
   if (!log_) open_log();
+  if (stop_.stop_requested()) stop_ = std::stop_source();
   if (at_work_ == 0) {
     for (const std::size_t i : sweep::runs_to_make(rows_)) rows_.erase(i);
     count();
@@ -201,6 +206,7 @@ bool Experiment::cancel() {
     return false;
   }
   enter(ExperimentState::Cancelled);
+  stop_.request_stop();
   close_log_if_idle();
   return true;
 }
@@ -219,7 +225,7 @@ std::optional<Experiment::Work> Experiment::next() {
   }
   missing_.pop_back();
   ++at_work_;
-  return Work{plan_, run, lost_.contains(run)};
+  return Work{plan_, run, stop_.get_token(), lost_.contains(run)};
 }
 
 bool Experiment::next_is_alone() const {

@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -65,13 +66,16 @@ class Experiment {
   void resume();
   /// Begins no further runs; those at work end. False if it does not run.
   bool pause();
+  /// As pause(), but stops those at work, which a later resume() makes again. False if it has
+  /// ended.
   bool cancel();
 
   /// A run to be made, which the caller then gives to take() or put_back().
   struct Work {
     std::shared_ptr<const sweep::Plan> plan{};
     std::size_t run = 0;
-    bool alone = false;  // it may have killed the program: no other run may be under way
+    std::stop_token stop{};  // of a cancel()
+    bool alone = false;      // it may have killed the program: no other run may be under way
   };
   /// next() would give a run that must be alone.
   bool next_is_alone() const;
@@ -113,6 +117,7 @@ class Experiment {
   std::vector<std::size_t> missing_{};    // runs to be made, the last one first
   std::set<std::size_t> lost_{};          // of these, as RunLog has them; at the end of missing_
   std::size_t at_work_ = 0;
+  std::stop_source stop_{};                  // of the runs at work
   Clock::time_point began_{};                // when it was last started,
   std::size_t done_before_ = 0;              // and the runs done by then
   std::uint64_t changes_ = 0;                // of rows_

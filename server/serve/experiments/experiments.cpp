@@ -2,6 +2,7 @@
 #include "server/serve/experiments/experiments.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <system_error>
 #include <thread>
 #include <tuple>
@@ -10,7 +11,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "server/experiment/sweep/sweep_run.hpp"
 #include "server/record/run_json.hpp"
 #include "server/serve/net/http.hpp"
 #include "server/serve/workers.hpp"
@@ -20,6 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::chrono::seconds kRemoval{5};  // a run is stopped between two ticks
 constexpr std::size_t kMostLoaded = 3;  // experiments that do not run, with plan and rows in memory
 
 unsigned workers_of(unsigned wanted) {
@@ -123,6 +124,7 @@ Experiments::Posted Experiments::post(const nlohmann::json& document,
                       .key = key,
                       .created = wall_time()};
   Posted posted;
+  await_removed(info.id);
   const std::uint64_t bytes = rules_.keep_bytes > 0 ? bytes_in(rules_.folder) : 0;
   {
     const std::lock_guard lock(mutex_);
@@ -146,6 +148,18 @@ Experiments::Posted Experiments::post(const nlohmann::json& document,
   if (!posted.created) resume(posted.experiment->info().id);
   ring();
   return posted;
+}
+
+std::pair<sweep::Plan, sweep::Estimate> Experiments::estimate(const nlohmann::json& document,
+                                                              const std::stop_token& stop) {
+  const std::unique_lock alone(estimating_, std::try_to_lock);
+  if (!alone) {
+    throw net::HttpError(429, "Another estimate is being made. Try again in some seconds.");
+  }
+  sweep::Plan plan(sweep::document_from_json(document, library_, rules_.controllers));
+  plan.check();
+  const sweep::Estimate cost = sweep::estimate(plan, {.stop = stop});
+  return {std::move(plan), cost};
 }
 
 std::vector<ExperimentInfo> Experiments::list() const {
@@ -184,6 +198,17 @@ void Experiments::pause(const std::string& id) {
 
 void Experiments::cancel(const std::string& id) {
   if (!find(id)->cancel()) throw net::HttpError(409, "The experiment has ended already.");
+}
+
+/// The stopped runs of a deleted experiment still hold its files.
+void Experiments::await_removed(const std::string& id) {
+  std::unique_lock lock(mutex_);
+  const bool gone = wake_.wait_for(lock, kRemoval, [&] {
+    return std::ranges::none_of(removed_, [&](const auto& each) { return each->info().id == id; });
+  });
+  if (gone) return;
+  throw net::HttpError(
+      503, "The experiment was deleted, and its last run is still being stopped. Try again later.");
 }
 
 void Experiments::remove(const std::string& id) {
@@ -260,7 +285,11 @@ void Experiments::ring() {
 
 void Experiments::work(const Turn& turn, const std::stop_token& stop) {
   const auto& [experiment, work] = turn;
-  const experiment::Row row = sweep::run_one(*work.plan, work.run, stop);
+  std::stop_source over;  // by the end of the server, or of the experiment
+  const auto end = [&] { over.request_stop(); };
+  const std::stop_callback by_server(stop, end);
+  const std::stop_callback by_person(work.stop, end);
+  const experiment::Row row = sweep::run_one(*work.plan, work.run, over.get_token());
   if (row.outcome == algo::Outcome::Stopped) {
     experiment->put_back(work.run);
   } else {
@@ -270,8 +299,10 @@ void Experiments::work(const Turn& turn, const std::stop_token& stop) {
   --at_work_;
   if (alone_) wake_.notify_all();
   alone_ = false;
-  if (experiment->at_work() || std::erase(removed_, experiment) == 0) return;
+  if (experiment->at_work() || std::ranges::count(removed_, experiment) == 0) return;
   delete_files(*experiment);
+  std::erase(removed_, experiment);
+  wake_.notify_all();
 }
 
 }  // namespace server

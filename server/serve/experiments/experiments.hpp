@@ -12,9 +12,11 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/experiment/pool.hpp"
+#include "server/experiment/sweep/sweep_run.hpp"
 #include "server/run/scenario_library.hpp"
 #include "server/serve/experiments/experiment.hpp"
 
@@ -51,6 +53,11 @@ class Experiments {
   /// run or there is no room for another.
   Posted post(const nlohmann::json& document, const std::string& key, const std::string& by);
 
+  /// What the experiment of a document would cost, and its plan. Checks everything as post() does.
+  /// One at a time: it takes some seconds of a core. Throws DocumentError, or net::HttpError 429.
+  std::pair<sweep::Plan, sweep::Estimate> estimate(const nlohmann::json& document,
+                                                   const std::stop_token& stop);
+
   /// The newest first.
   std::vector<ExperimentInfo> list() const;
   /// Throws net::HttpError 404.
@@ -60,7 +67,7 @@ class Experiments {
   void resume(const std::string& id);
   void pause(const std::string& id);
   void cancel(const std::string& id);
-  /// With its files; a run at work ends first.
+  /// With its files; its runs at work are stopped.
   void remove(const std::string& id);
 
   /// Gives back the memory of those that are neither running nor among the last looked at.
@@ -80,10 +87,12 @@ class Experiments {
   void work(const Turn& turn, const std::stop_token& stop);
   void ring();
   void drop(const std::string& id);
+  void await_removed(const std::string& id);
   static void delete_files(const Experiment& experiment);
 
   const ExperimentRules rules_;
   const ScenarioLibrary& library_;
+  std::mutex estimating_{};
   mutable std::mutex mutex_{};  // before those of the experiments
   std::condition_variable_any wake_{};
   std::map<std::string, std::shared_ptr<Experiment>> all_{};  // by id

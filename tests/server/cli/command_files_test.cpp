@@ -97,6 +97,17 @@ TEST_F(CommandFilesTest, AnOptionWithoutEffectIsRefused) {
   EXPECT_THAT(refusal(add_locate_command, {"locate", "x", "--study"}), HasSubstr("LOG"));
 }
 
+TEST_F(CommandFilesTest, ASeedThatTheStoreCannotKeepIsRefused) {
+  const auto run = [&](const char* seed) {
+    return refusal(add_run_command, {"run", "case1", "--seed", seed, "--out", path("runs.db")});
+  };
+  EXPECT_EQ(run("9007199254740992"), "seed: is 9007199254740992, must be at most 9007199254740991");
+  EXPECT_THAT(run("99999999999999999999"), HasSubstr("99999999999999999999 must be from 0 to"));
+  EXPECT_THAT(refusal(add_export_command, {"export", "99999999999999999999"}),
+              HasSubstr("99999999999999999999 must be from"));
+  EXPECT_FALSE(std::filesystem::exists(path("runs.db")));
+}
+
 TEST_F(CommandFilesTest, ACommandThatSelectsNothingIsRefused) {
   const auto buildings = [](std::vector<std::string> options) {
     options.insert(options.begin(), "buildings");

@@ -38,6 +38,19 @@ TEST(Options, ANegativeNumberIsNoUnsignedOne) {
   EXPECT_EQ(refused<int>("-1"), "");
 }
 
+TEST(Options, ANumberBeyondItsTypeIsRefused) {
+  EXPECT_THAT(refused<std::uint64_t>("99999999999999999999"),
+              HasSubstr("99999999999999999999 must be from 0 to 18446744073709551615"));
+  EXPECT_THAT(refused<std::int64_t>("99999999999999999999"),
+              HasSubstr("must be from -9223372036854775808 to 9223372036854775807"));
+  EXPECT_THAT(refused<std::optional<std::uint64_t>>("18446744073709551616"), HasSubstr("must be"));
+  EXPECT_THAT(refused<std::uint16_t>("65536"), HasSubstr("must be from 0 to 65535"));
+  EXPECT_THAT(refused<int>("-2147483649"), HasSubstr("must be from -2147483648"));
+  EXPECT_EQ(refused<std::int64_t>("9223372036854775807"), "");
+  EXPECT_EQ(refused<int>("-2147483648"), "");
+  EXPECT_NE(refused<unsigned>("many"), "");
+}
+
 TEST(Options, ANumberIsFinite) {
   for (const char* bad : {"nan", "-nan", "inf", "-inf", "1e999"}) {
     EXPECT_THAT(refused<double>(bad), HasSubstr("must be a finite number")) << bad;

@@ -100,6 +100,15 @@ TEST_F(SweepCommandTest, AReportIsWrittenAgainFromTheFinishedRuns) {
   EXPECT_TRUE(std::filesystem::exists(out() / "report.html"));
 }
 
+TEST_F(SweepCommandTest, AFolderOfAnotherDocumentIsRefusedWithTheOptionThatHelps) {
+  sweep(kDocument);
+  std::string other = kDocument;
+  other.replace(other.find("\"repeats\": 2"), 12, "\"repeats\": 3");
+  EXPECT_THAT([&] { sweep(other); },
+              ThrowsMessage<std::runtime_error>(
+                  HasSubstr("repeats is 2 there and 3 here. Choose another folder with --out")));
+}
+
 TEST_F(SweepCommandTest, TheExitStatusTellsMissingAndFailedRuns) {
   sweep(kDocument);
   const std::string log = read_text(out() / "runs.jsonl");

@@ -2,6 +2,8 @@
 // workers and interruptions, and never mixes two documents.
 #include "server/experiment/sweep/sweep_run.hpp"
 
+#include <chrono>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -180,6 +182,31 @@ TEST_F(SweepRun, AnotherVersionIsAnotherExperiment) {
               StartsWith("tautline (the version) is \"0.0.9\" there and "));
 }
 
+TEST_F(SweepRun, TheCopiesOfTheScenariosGiveTheSameExperiment) {
+  json every = short_document();
+  every.erase("sweep");
+  every["controllers"] = {"go_to_goal"};
+  every.erase("comparisons");
+  every["time_factor"] = 2;
+  every["noise"] = {{"laser", 0.01}};
+  const ScenarioLibrary library("", "");
+  for (const ScenarioEntry& entry : library.list()) {
+    if (library.load(entry.name).end_W()) every["scenarios"].push_back(entry.name);
+  }
+  every["scenarios"].push_back({{"random_layouts", {{"count", 2}, {"robot", "jackal"}}}});
+  const Document document = document_from_json(every, library);
+  EXPECT_FALSE(document_in(folder("out"), every).has_value());
+  write_scenarios(document, folder("out"));
+  const auto copied = document_in(folder("out"), every);
+  ASSERT_TRUE(copied.has_value());
+  EXPECT_EQ(identity_of(*copied), identity_of(document));
+  ASSERT_EQ(copied->scenarios.size(), document.scenarios.size());
+  for (std::size_t i = 0; i < document.scenarios.size(); ++i) {
+    EXPECT_EQ(copied->scenarios[i].name, document.scenarios[i].name);
+    EXPECT_EQ(copied->scenarios[i].time_limit, document.scenarios[i].time_limit);
+  }
+}
+
 TEST_F(SweepRun, LeavesAForeignFileAlone) {
   make_folder(folder("out"));
   for (const char* const text : {"my notes", "my notes\n", "{}\n", "[1]\n{\n"}) {
@@ -300,6 +327,87 @@ TEST_F(SweepRun, EstimatesFromTheFirstSeconds) {
   EXPECT_GT(cost.cpu_time, 0);
   EXPECT_GT(cost.bytes, 24 * 500.0);
   EXPECT_LT(cost.bytes, 24 * 5000.0);
+}
+
+TEST_F(SweepRun, AnEstimateMeasuresAControllerOnceAndEndsInTime) {
+  json slow = short_document();
+  slow.erase("sweep");
+  slow.erase("comparisons");
+  slow["physics"] = "bullet";
+  slow["controllers"] = {"original", "go_to_goal"};
+  for (int i = 0; i < 20; ++i) {
+    slow["controllers"].push_back({{"name", "strip"}, {"label", "strip " + std::to_string(i)}});
+  }
+  const Plan many = short_plan(slow);
+  const auto time_of = [&](const EstimateOptions& options, Estimate& cost) {
+    const auto begin = std::chrono::steady_clock::now();
+    cost = estimate(many, options);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  Estimate whole;
+  Estimate cut;
+  const double long_time = time_of({.most_time = 1000}, whole);
+  EXPECT_FALSE(whole.extrapolated);
+  EXPECT_LT(time_of({.most_time = 0.01}, cut), long_time);
+  EXPECT_TRUE(cut.extrapolated);
+  EXPECT_GT(cut.cpu_time, 0);
+  EXPECT_GT(cut.bytes, 0);
+  std::stop_source stop;
+  stop.request_stop();
+  Estimate none;
+  EXPECT_LT(time_of({.most_time = 1000, .stop = stop.get_token()}, none), long_time);
+}
+
+TEST_F(SweepRun, RunsWhoseRecordIsIncompleteFailAndAreMadeAgain) {
+  make_folder(folder("whole"));
+  make_folder(folder("out"));
+  std::uint64_t bytes = 0;  // of all records
+  {
+    Recorder recorder((folder("whole") / "runs.db").string());
+    run_sweep(plan, folder("whole"), {.threads = 1}, Wanted::Missing, {}, {&recorder, false});
+    bytes = recorder.ask([](db::RunStore& store) { return store.used_bytes(); });
+  }
+  const std::string store = (folder("out") / "runs.db").string();
+  std::size_t failed = 0;
+  {
+    Recorder recorder(store,
+                      {.retention_bytes = bytes * 2 / 3,
+                       .wait_for_room = false,
+                       .when_full = "Make room.",
+                       .commit_interval = std::chrono::milliseconds(5)});
+    const Rows rows =
+        run_sweep(plan, folder("out"), {.threads = 1}, Wanted::Missing, {}, {&recorder, false});
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (!rows.broken(i)) continue;
+      EXPECT_THAT(rows.reason(i), HasSubstr("record"));
+      EXPECT_THAT(rows.reason(i), testing::EndsWith("Make room."));
+      ++failed;
+    }
+    EXPECT_GT(failed, 0U);
+    EXPECT_LT(failed, rows.size());
+    EXPECT_EQ(results_of(plan, rows).failed, failed);
+  }
+  std::size_t made = 0;
+  {
+    Recorder recorder(store);
+    const Rows rows =
+        run_sweep(plan,
+                  folder("out"),
+                  {.threads = 1, .progress = [&](std::size_t, std::size_t all) { made = all; }},
+                  Wanted::Missing,
+                  {},
+                  {&recorder, false});
+    EXPECT_TRUE(results_of(plan, rows).complete());
+  }
+  EXPECT_EQ(made, failed);
+  std::set<std::string> whole;  // by scenario, controller, settings and seed
+  db::RunReader reader(store);
+  for (const db::RunRow& row : reader.list({}, 100).runs) {
+    if (row.lost_ticks > 0 || row.ticks == 0) continue;
+    whole.insert(row.what.scenario + row.what.controller + row.what.parameters +
+                 std::to_string(row.what.seed));
+  }
+  EXPECT_EQ(whole.size(), plan.size());
 }
 
 TEST_F(SweepRun, StoresWholeRunsOfAllOrOfThoseThatDoNotReach) {

@@ -1,6 +1,7 @@
 // tests/server/record/recorder_health_test.cpp: a locked, full, deleted or damaged store loses
 // ticks of the record, and nothing else.
 #include <fstream>
+#include <sstream>
 
 #include "tests/server/record/recorder_fixture.hpp"
 #include <gmock/gmock.h>
@@ -218,12 +219,12 @@ TEST_F(RecorderHealthTest, AStoreOfAnOlderProgramIsSetAsideWhole) {
   EXPECT_EQ(kept.query_integer("PRAGMA user_version"), 4);
 }
 
-TEST_F(RecorderHealthTest, ADamagedStoreIsSetAsideAtTheStartButATextFileIsNot) {
+TEST_F(RecorderHealthTest, ADamagedStoreIsSetAsideAtTheStartButAnotherFileIsNot) {
   {
     db::RunStore store(path);
     record(store, 100);
   }
-  spoil(0, 3);
+  spoil(1, 3);
   {
     Recorder recorder(path, quick());
     const auto live = recorder.begin(what());
@@ -233,11 +234,16 @@ TEST_F(RecorderHealthTest, ADamagedStoreIsSetAsideAtTheStartButATextFileIsNot) {
     expect_frames(live->run(), 10);
     EXPECT_TRUE(tells(recorder, "set aside as"));
   }
-  const std::string text = (folder / "notes.txt").string();
-  std::ofstream(text) << "Remember the milk.\n" << std::string(5000, 'x');
-  EXPECT_THAT(refusal([&] { const Recorder recorder(text, quick()); }),
-              HasSubstr("not a database"));
-  EXPECT_TRUE(std::filesystem::exists(text));
+  const std::string other = (folder / "notes.txt").string();
+  const std::string text = "Remember the milk.\n" + std::string(5000, 'x');
+  for (const std::string& bytes : {text, std::string(8192, '\7'), std::string("SQLite format 3")}) {
+    std::ofstream(other) << bytes;
+    EXPECT_THAT(refusal([&] { const Recorder recorder(other, quick()); }),
+                HasSubstr("notes.txt is not a database; choose another file"));
+    std::stringstream left;
+    left << std::ifstream(other).rdbuf();
+    EXPECT_EQ(left.str(), bytes);
+  }
 }
 
 TEST_F(RecorderHealthTest, OneDamagedOldRunDoesNotEndANewOne) {

@@ -13,6 +13,8 @@
 #include "server/experiment/sweep/sweep_report.hpp"
 #include "server/experiment/sweep/sweep_results.hpp"
 #include "server/experiment/sweep/sweep_run.hpp"
+#include "server/run/robot_json.hpp"
+#include "server/run/robot_library.hpp"
 #include "server/run/text_file.hpp"
 #include "server/serve/net/http.hpp"
 
@@ -117,6 +119,36 @@ TEST_F(ExperimentsTest, GoesOnAfterTheEndOfTheServer) {
   experiment->write_report();
   EXPECT_EQ(results_in(experiment->folder()),
             expected(source, library, folder().parent_path() / "alone"));
+}
+
+TEST_F(ExperimentsTest, ItsCopiesOutliveTheRobotsAndScenariosOfTheUser) {
+  const fs::path user = folder().parent_path() / "user";
+  make_folder(user);
+  json robot = robot_document(builtin_robot("jackal"));
+  robot["name"] = "carrier";
+  write_text(user / "carrier.json", robot.dump());
+  write_text(user / "mine.json", R"({"name":"mine","robot":"carrier","goal":{"x":1,"y":0}})");
+  const ScenarioLibrary own(user, "", RobotLibrary(user));
+  json source = document("copied", 2);
+  source["scenarios"][0]["robot"] = "carrier";
+  source["scenarios"].push_back("mine");
+  source["time_factor"] = 2;
+  std::string id;
+  {
+    Experiments experiments(rules(), own);
+    id = experiments.post(source, "", "").experiment->info().id;
+    ASSERT_TRUE(comes_to(*experiments.find(id), ExperimentState::Finished));
+  }
+  for (const bool gone : {false, true}) {
+    robot["mass"] = 18;
+    write_text(user / "carrier.json", robot.dump());
+    write_text(user / "mine.json", R"({"name":"mine","goal":{"x":2,"y":0}})");
+    if (gone) fs::remove_all(user);
+    Experiments experiments(rules(), own);
+    EXPECT_EQ(experiments.find(id)->write_report()->at("runs"), 8) << gone;
+    experiments.resume(id);
+    EXPECT_EQ(experiments.find(id)->info().state, ExperimentState::Finished) << gone;
+  }
 }
 
 TEST_F(ExperimentsTest, ARunUnderWayAtTwoDeathsOfTheServerFailsAndTheOthersFinish) {
@@ -232,6 +264,75 @@ TEST_F(ExperimentsTest, ADeletedOneTakesItsFilesWithItWhenItsRunsHaveEnded) {
   EXPECT_FALSE(fs::exists(folder() / id));
 }
 
+/// One run that would take hours.
+json everlasting(const char* name) {
+  json forever = document(name, 1, 9000);
+  forever["controllers"] = {"go_to_goal"};
+  forever.erase("comparisons");
+  forever["physics"] = "bullet";
+  forever["time_limit"] = 1e6;
+  return forever;
+}
+
+TEST_F(ExperimentsTest, ADeletedOneLeavesItsWorkerToTheOthersAndItsPlaceToANewOne) {
+  Experiments experiments({.folder = folder(), .workers = 1}, library);
+  const std::string id = experiments.post(everlasting("forever"), "", "").experiment->info().id;
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(comes([&] { return experiments.find(id)->at_work(); }));
+    experiments.remove(id);
+    EXPECT_TRUE(experiments.post(everlasting("forever"), "", "").created);
+  }
+  experiments.remove(id);
+  const auto next = experiments.post(document("next", 2), "", "");
+  EXPECT_TRUE(comes_to(*next.experiment, ExperimentState::Finished));
+}
+
+TEST_F(ExperimentsTest, ACancelledOneStopsItsRunWhichIsMadeAgainWhenResumed) {
+  Experiments experiments({.folder = folder(), .workers = 1}, library);
+  const std::shared_ptr<Experiment> forever =
+      experiments.post(everlasting("forever"), "", "").experiment;
+  const std::string id = forever->info().id;
+  ASSERT_TRUE(comes([&] { return forever->at_work(); }));
+  experiments.cancel(id);
+  ASSERT_TRUE(comes([&] { return !forever->at_work(); }));
+  EXPECT_EQ(forever->info().state, ExperimentState::Cancelled);
+  EXPECT_EQ(forever->info().done, 0U);
+  experiments.resume(id);
+  EXPECT_TRUE(comes([&] { return forever->at_work(); }));
+  EXPECT_EQ(forever->info().state, ExperimentState::Running);
+}
+
+TEST_F(ExperimentsTest, OneEstimateIsMadeAtATimeAndEndsWithTheServer) {
+  Experiments experiments(rules(), library);
+  json slow = everlasting("slow");
+  for (int i = 0; i < 40; ++i) {
+    slow["scenarios"][0]["obstacles"].push_back(
+        {{"type", "cylinder"}, {"x", 3}, {"y", i}, {"radius", 0.1}});
+  }
+  std::stop_source stop;
+  std::thread first([&] {
+    for (bool made = false; !made;) {
+      try {
+        experiments.estimate(slow, stop.get_token());
+        made = true;
+      } catch (const net::HttpError&) {  // the other one's turn
+      }
+    }
+  });
+  bool refused = false;
+  for (int i = 0; i < 2000 && !refused; ++i) {
+    try {
+      experiments.estimate(document("other", 1), {});
+    } catch (const net::HttpError& e) {
+      refused = e.status() == 429;
+    }
+  }
+  EXPECT_TRUE(refused);
+  stop.request_stop();
+  first.join();
+  EXPECT_EQ(experiments.estimate(document("other", 1), {}).first.size(), 2U);
+}
+
 TEST_F(ExperimentsTest, AKeyBelongsToOneDocument) {
   Experiments experiments(rules(), library);
   const auto posted = experiments.post(document("a", 1), "key", "");
@@ -307,6 +408,13 @@ TEST_F(ExperimentsTest, FilesThatCannotBeReadAreNamedAndLeftAlone) {
   EXPECT_THAT([&] { experiments.find(id)->plan(); },
               ThrowsMessage<net::HttpError>(HasSubstr("runs.jsonl")));
   EXPECT_EQ(read_text(folder() / id / "runs.jsonl"), "nonsense\n");
+  write_text(folder() / id / "runs.jsonl",
+             R"({"sweep":"0","identity":{"tautline":"0.0.1"}})"
+             "\n");
+  Experiments others(rules(), library);
+  EXPECT_THAT([&] { others.find(id)->plan(); },
+              ThrowsMessage<net::HttpError>(testing::AllOf(HasSubstr("another experiment"),
+                                                           testing::Not(HasSubstr("--out")))));
 }
 
 }  // namespace

@@ -85,6 +85,16 @@ TEST_F(RolesTest, AnOperatorDrivesAndAnAdminDeletes) {
   EXPECT_EQ(as(kOperator, "POST", "/session/scenario", {{"name", "mine"}}).status, 201);
   expect_problem(as(kOperator, "DELETE", "/scenarios/mine"), 403, "needs the role admin");
   EXPECT_EQ(as(kAdmin, "DELETE", "/scenarios/mine").status, 204);
+  const json document = {{"name", "short"},
+                         {"scenarios", {{{"name", "near"}, {"goal", {{"x", 1}, {"y", 0}}}}}},
+                         {"controllers", {"go_to_goal"}},
+                         {"physics", "kinematic"}};
+  const auto posted = as(kOperator, "POST", "/experiments", document);
+  ASSERT_LT(posted.status, 300) << posted.body;
+  const std::string experiment =
+      "/experiments/" + json::parse(posted.body).at("id").get<std::string>();
+  expect_problem(as(kOperator, "DELETE", experiment), 403, "needs the role admin");
+  EXPECT_EQ(as(kAdmin, "DELETE", experiment).status, 204);
 }
 
 TEST_F(RolesTest, EachRoleReadsItsShareOfTheSystem) {

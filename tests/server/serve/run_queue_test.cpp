@@ -129,6 +129,22 @@ TEST_F(RunQueueTest, SeveralThreadsWorkOffOneQueue) {
   for (const db::RunId run : runs) EXPECT_TRUE(comes_to(run, RunStatus::Cancelled)) << run;
 }
 
+TEST_F(RunQueueTest, ASlowlyPacedRunHoldsUpNoOther) {
+  Recorder recorder(path, recorder_options());
+  RunQueue queue(recorder);
+  const auto slow = start(queue, {.spec = case1(), .repeats = 2, .pace = 0.01});
+  ASSERT_TRUE(comes_to(slow[0], RunStatus::Recording));
+  const auto fast = start(queue, {.spec = case1(), .repeats = 2});
+  for (const db::RunId run : fast) EXPECT_TRUE(comes_to(run, RunStatus::Finished));
+  RunReader reader(path);
+  EXPECT_EQ(get(reader, slow[0]).status, RunStatus::Recording);
+  EXPECT_EQ(get(reader, slow[1]).status, RunStatus::Queued);
+  for (const db::RunId run : slow) {
+    EXPECT_TRUE(queue.cancel(run));
+    EXPECT_TRUE(comes_to(run, RunStatus::Cancelled));
+  }
+}
+
 TEST_F(RunQueueTest, WaitingWorldsAreLimitedInBytes) {
   Recorder recorder(path, recorder_options());
   RunQueue queue(recorder);

@@ -97,4 +97,5 @@ export interface Estimate {
   seeds: number;
   cpu_time: number; // [s]
   bytes: number;
+  extrapolated: boolean; // not every controller was measured
 }

@@ -46,7 +46,7 @@ export function NewExperiment(props: { document: unknown; on_close: () => void; 
         <Problem text={problem} name="experiment-problem" />
         {estimate && <p role="status" data-testid="experiment-estimate"><b class="num">{counted(estimate.runs, "run")}:</b> {" "}
           {counted(estimate.scenarios, "scenario")} × {counted(estimate.controllers, "controller")} × {counted(estimate.settings, "setting")} × {counted(estimate.seeds, "seed")};
-          at most {span_words(estimate.cpu_time)} of one core.</p>}
+          at most {span_words(estimate.cpu_time)} of one core{estimate.extrapolated && ", a guess: these runs are slow to measure"}.</p>}
         <div class="experiment-acts">
           <button type="button" class="ghost" disabled={busy !== ""} data-testid="experiment-check" onClick={() => void check()}>
             {busy === "check" ? "Checking" : "Check"}</button>

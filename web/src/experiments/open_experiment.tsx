@@ -95,7 +95,7 @@ function Head(props: {
         <Guard need="operator"><button class="ghost small" data-testid="experiment-again"
           onClick={() => props.on_again(detail.document)}>Document</button></Guard>
         <Downloads id={info.id} />
-        <Guard need="operator">{sure
+        <Guard need="admin">{sure
           ? <button class="small danger" data-testid="experiment-delete-sure" onClick={() => void remove()}>Delete it and its runs</button>
           : <button class="icon" aria-label="Delete the experiment" title="Delete" data-testid="experiment-delete"
               onClick={() => set_sure(true)}>{icons.trash}</button>}</Guard>
