@@ -8,7 +8,7 @@ import { kCompareStep, kGoalStep, kObstacleStep } from "../state/first_steps";
 import { Route } from "../state/goals";
 import { robot_pose } from "../state/scene";
 import {
-  Step, add_edit, change_edit, goal_json, goal_request, move_edit, move_request, route_edit, start_edit,
+  Step, add_edit, change_edit, empty_world, goal_json, goal_request, move_edit, move_request, route_edit, start_edit,
   without_goal,
 } from "./edits";
 import { Edit, EditHistory } from "./history";
@@ -149,9 +149,7 @@ export class Editor {
   async new_world(): Promise<void> {
     const s = this.app_.ui.value.session;
     if (!s) return;
-    const { robot, controller, filter, physics } = s.scenario;
-    const scenario = { name: "new_world", title: "New world", start: { x: 0, y: 0, heading: 0 }, robot, controller, filter, physics };
-    if (await this.change_run("New world", { scenario })) this.app_.fit_view();
+    if (await this.change_run("New world", { scenario: empty_world(s.scenario) })) this.app_.fit_view();
   }
 
   /** Begins another run, which undo takes back: the world, the gains and the robot's place. */
