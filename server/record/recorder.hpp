@@ -14,6 +14,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <type_traits>
 #include <utility>
@@ -79,8 +80,8 @@ struct RecorderOptions {
   /// Without room, a run to be kept whole waits until room is made. Otherwise it goes on with a
   /// gap.
   bool wait_for_room = true;
-  /// What a person can do about a full record, as a sentence.
-  std::string when_full =
+  /// What a person can do about a full record: a sentence that outlives the recorder.
+  std::string_view when_full =
       "Finished runs are never deleted unasked, so nothing more is recorded: delete runs, or start "
       "the server with a larger --keep or with --evict oldest.";
   /// How long a deleted run can be restored, if there is room.

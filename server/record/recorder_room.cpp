@@ -145,7 +145,7 @@ void Recorder::judge_room(bool more_to_come) {
                                               static_cast<double>(used_) / kMegabyte,
                                               static_cast<double>(limit) / kMegabyte)
                                 : std::string("The disk under the record is almost full.");
-    full_ = why + ' ' + options_.when_full;
+    full_ = fmt::format("{} {}", why, options_.when_full);
     for (const auto& channel : channels_) channel->fail(*full_);
     publish();  // before takes_more(): whoever sees that reads the reason
     takes_more_ = false;

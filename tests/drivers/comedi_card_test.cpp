@@ -152,11 +152,12 @@ TEST(ComediCard, ReportsItsChannels) {
 
 TEST(ComediCard, ALostCardIsReported) {
   const Slot slot;
-  const auto card = slot.open();
+  auto card = slot.open();
   slot.memory().gone = 1;
   EXPECT_THROW(card->read(), CardError);
   EXPECT_THROW(card->write({0, 0}), CardError);
   EXPECT_THROW(card->set_relay_line(true), CardError);
+  card.reset();  // until then it is in use
   EXPECT_THAT(slot.refusal(), HasSubstr("cannot be opened: No such device"));
 }
 
@@ -203,6 +204,8 @@ TEST(ComediCard, AnEndingEmulatorKeepsTheNextOnesCardFile) {
   const tests::TemporaryFolder folder;
   const auto path = folder.path() / "card";
   auto first = std::make_unique<CardFile>(path, CardChannels{});
+  EXPECT_THROW(CardFile(path, CardChannels{}), std::runtime_error);  // it is in use
+  std::filesystem::remove(path);
   auto second = std::make_unique<CardFile>(path, CardChannels{});
   first.reset();
   EXPECT_EQ(open_comedi_card(path.string(), card_setup())->read().stop_button, true);

@@ -78,7 +78,9 @@ LoadRequest load_request(const json& body) {
            "begin"});
   LoadRequest out{.overrides = overrides_from_json(body)};
   if (in.has("scenario") && !body["scenario"].is_object()) out.name = in.text("scenario", 64);
-  if (in.has("scenario") && body["scenario"].is_object()) out.document = body["scenario"];
+  if (in.has("scenario") && body["scenario"].is_object()) {
+    out.document = std::make_shared<const json>(body["scenario"]);
+  }
   out.same_world = !in.has("scenario");
   if (in.has("begin")) {
     const JsonReader begin = in.object("begin");
@@ -104,7 +106,7 @@ bool load_from_json(ApiContext& context,
                     OpenSession& session,
                     const json& body,
                     SessionLoader::Done done) {
-  const LoadRequest asked = load_request(body);
+  LoadRequest asked = load_request(body);
   if (const auto& hardware = session.session().state().spec.hardware) {
     if (asked.document || (asked.name && *asked.name != hardware->scenario.name)) {
       throw DocumentError(
