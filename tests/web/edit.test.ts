@@ -5,7 +5,7 @@ import { Selection } from "../../web/src/draw/scene";
 import { View } from "../../web/src/draw/view";
 import { sketched } from "../../web/src/edit/drawn";
 import {
-  Step, add_edit, corners_of, empty_world, move_edit, new_box, new_cylinder, new_wall, new_walker, polygon_defect, remove_edit,
+  Step, add_edit, corners_of, move_edit, new_box, new_cylinder, new_wall, new_walker, polygon_defect, remove_edit,
   reordered, route_edit, speed_of, without_goal,
 } from "../../web/src/edit/edits";
 import { handles_of } from "../../web/src/edit/handles";
@@ -460,13 +460,4 @@ test("numbers and states in words", () => {
   assert.equal(result_word("recording").word, "Recording");
   assert.deepEqual(result_word("interrupted"), { word: "Interrupted", tone: "muted" });
   assert.equal(state_word(null, null, false).word, "No link");
-});
-
-test("an empty world keeps the robot with its sensors", () => {
-  const world = { name: "hall", obstacles: [{ type: "wall" }], controller: "strip", lasers: [{ beams: 541 }], gyro: false };
-  const own = { name: "carrier", radius: 0.4 };
-  const empty = empty_world({ ...world, robot: own } as never);
-  assert.deepEqual([empty.robot, empty.lasers, empty.gyro, empty.controller], [own, [{ beams: 541 }], false, "strip"]);
-  assert.equal(empty.obstacles, undefined);
-  assert.equal("lasers" in empty_world({ ...world, robot: "jackal" } as never), false); // its own
 });

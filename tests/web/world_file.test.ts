@@ -1,6 +1,7 @@
 // tests/web/world_file.test.ts: worlds from files, and maps to files.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { empty_world } from "../../web/src/edit/empty_world";
 import { map_of_world, read_pgm, world_of_map } from "../../web/src/edit/map_file";
 import { read_map_info } from "../../web/src/edit/map_yaml";
 import { name_of, read_worlds } from "../../web/src/edit/world_file";
@@ -90,4 +91,13 @@ test("a file that holds no world says why", () => {
   assert.throws(bad('{"worlds":[{"id":1,"start":[0,1,2],"goal":[0,9],"obstacles":[[1]]}]}'), /obstacle 1 must be/);
   assert.throws(() => read_worlds([file("x.txt", "")]), /Choose a scenario/);
   assert.deepEqual(read_worlds([file("My room.json", "{}")])[0].name, "my_room");
+});
+
+test("an empty world keeps the robot with its sensors", () => {
+  const world = { name: "hall", obstacles: [{ type: "wall" }], controller: "strip", lasers: [{ beams: 541 }], gyro: false };
+  const own = { name: "carrier", radius: 0.4 };
+  const empty = empty_world({ ...world, robot: own } as never);
+  assert.deepEqual([empty.robot, empty.lasers, empty.gyro, empty.controller], [own, [{ beams: 541 }], false, "strip"]);
+  assert.equal(empty.obstacles, undefined);
+  assert.equal("lasers" in empty_world({ ...world, robot: "jackal" } as never), false); // its own
 });

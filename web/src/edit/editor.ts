@@ -8,7 +8,7 @@ import { kCompareStep, kGoalStep, kObstacleStep } from "../state/first_steps";
 import { Route } from "../state/goals";
 import { robot_pose } from "../state/scene";
 import {
-  Step, add_edit, change_edit, empty_world, goal_json, goal_request, move_edit, move_request, route_edit, start_edit,
+  Step, add_edit, change_edit, goal_json, goal_request, move_edit, move_request, route_edit, start_edit,
   without_goal,
 } from "./edits";
 import { Edit, EditHistory } from "./history";
@@ -145,11 +145,9 @@ export class Editor {
     if (change.scenario === s.scenario.name) this.app_.fit_view(); // another one has its own camera
   }
 
-  /** An empty world for the robot and the controller of now. */
-  async new_world(): Promise<void> {
-    const s = this.app_.ui.value.session;
-    if (!s) return;
-    if (await this.change_run("New world", { scenario: empty_world(s.scenario) })) this.app_.fit_view();
+  /** Loads a world that nobody saved. */
+  async new_world(scenario: ScenarioDocument): Promise<void> {
+    if (await this.change_run("New world", { scenario })) this.app_.fit_view();
   }
 
   /** Begins another run, which undo takes back: the world, the gains and the robot's place. */

@@ -1,5 +1,5 @@
 // web/src/edit/edits.ts: the edits of people, each as one value with its undo.
-import { GoalJson, RequestJson, ScenarioDocument } from "../contract";
+import { GoalJson, RequestJson } from "../contract";
 import { Point, Pose, distance } from "../geometry";
 import { Goal } from "../link/frame";
 import {
@@ -43,20 +43,6 @@ export function reordered({ goals, next, loop }: Route, index: number, by: numbe
   order.splice(index, 1);
   order.splice(index + by, 0, index);
   return { goals: order.map((i) => goals[i]), next: order.indexOf(next), loop };
-}
-
-const kSensors = ["lasers", "sonar", "infrared", "sensors", "gyro", "bumpers", "encoders", "line_camera", "inclinometer",
-  "floor_sensors"];
-
-/** An empty world for the robot and the controller of `now`. A robot of your own is a whole model, whose sensors stand
- *  beside it; a name stands for the sensors too. */
-export function empty_world(now: ScenarioDocument): ScenarioDocument {
-  const { robot, controller, filter, physics } = now;
-  const sensors = typeof robot === "object" ? kSensors.filter((key) => key in now).map((key) => [key, now[key]]) : [];
-  return {
-    name: "new_world", title: "New world", start: { x: 0, y: 0, heading: 0 }, robot, controller, filter, physics,
-    ...Object.fromEntries(sensors),
-  };
 }
 
 export function add_edit(obstacle: Obstacle): Edit {

@@ -3,6 +3,7 @@ import { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { use_app, use_ui } from "../app";
 import { ScenarioDocument } from "../contract";
+import { empty_world } from "../edit/empty_world";
 import { import_files } from "../edit/import";
 import { map_of_world } from "../edit/map_file";
 import { name_of } from "../edit/world_file";
@@ -50,7 +51,7 @@ export function WorldFiles(): JSX.Element {
       </form>
       <Problem text={problem} name="world-problem" />
       <div class="acts">
-        <button class="ghost" data-testid="world-new" onClick={() => void app.editor.new_world()}>New</button>
+        <button class="ghost" data-testid="world-new" onClick={() => void app.editor.new_world(empty_world(scenario))}>New</button>
         <button class="ghost" data-testid="world-open" onClick={() => {
           void app.fetch_lists();
           set_opening(true);
