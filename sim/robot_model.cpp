@@ -126,12 +126,15 @@ bool under_hull(const RobotModel& robot, const Caster& caster) {
 
 }  // namespace
 
-bool Sensors::has_laser() const {
+bool Sensors::looks_ahead() const {
   // A scanner that looks back says nothing about the way ahead.
-  const bool looks_ahead = std::ranges::any_of(lasers, [](const LaserConfig& laser) {
+  return std::ranges::any_of(lasers, [](const LaserConfig& laser) {
     return std::abs(laser.mount_R.heading) <= std::numbers::pi / 2;
   });
-  return looks_ahead || !sonar;
+}
+
+bool Sensors::has_laser() const {
+  return looks_ahead() || !sonar;
 }
 
 bool Sensors::has_ring() const {

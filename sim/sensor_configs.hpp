@@ -144,7 +144,8 @@ struct Sensors {
   std::uint32_t bumpers = 1;  // evenly around the hull from straight ahead, with equal sectors
   bool encoders = true;
 
-  /// True if a scanner looks ahead. If none does, a sonar ring replaces it.
+  bool looks_ahead() const;  // a scanner
+  /// False only if a sonar ring replaces the scanner, as none looks ahead.
   bool has_laser() const;
   /// True if the ring has a sonar for each axis that the laws for driving by hand read, and a round
   /// of its pings is short enough for them (algo/ring_axes.hpp).

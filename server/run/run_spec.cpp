@@ -31,13 +31,6 @@ namespace {
 using nlohmann::json;
 constexpr std::uint64_t kMaxSeed = (std::uint64_t{1} << 53) - 1;  // exact in a JSON number
 
-/// True with a sonar ring, or a scanner that looks ahead.
-bool sees_ahead(sim::Sensors sensors) {
-  if (sensors.sonar) return true;
-  sensors.sonar.emplace();  // beside a ring, only a scanner that looks ahead counts as a laser
-  return sensors.has_laser();
-}
-
 /// @param at  prefix of the fields in the document: "" or "robots/3/"
 void check_choices(const algo::ControllerCatalogue& catalogue,
                    const std::string& at,
@@ -51,7 +44,7 @@ void check_choices(const algo::ControllerCatalogue& catalogue,
     throw DocumentError(at + "controller",
                         fmt::format("'{}' is unknown; known are{}", controller_name, known));
   }
-  if (!sees_ahead(sensors)) {
+  if (!sensors.sonar && !sensors.looks_ahead()) {
     throw DocumentError(at + "lasers",
                         "none looks ahead, and there is no sonar ring: the robot would wait for a "
                         "scan for ever");
