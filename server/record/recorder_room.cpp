@@ -147,7 +147,7 @@ void Recorder::judge_room(bool more_to_come) {
                                 : std::string("The disk under the record is almost full.");
     full_ = fmt::format("{} {}", why, options_.when_full);
     for (const auto& channel : channels_) channel->fail(*full_);
-    publish();  // before takes_more(): whoever sees that reads the reason
+    publish();  // before takes_more() refuses: its caller then reads the reason in the status
     takes_more_ = false;
     report(*full_);
   }
