@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "tests/server/cli/parsed.hpp"
 #include "tests/temporary_folder.hpp"
 #include <CLI/CLI.hpp>
 #include <gmock/gmock.h>
@@ -22,19 +24,7 @@ class CommandFilesTest : public testing::Test {
  protected:
   /// The sentence that refuses these arguments, the first of which is the command; else empty.
   static std::string refusal(void (*add)(Command, int&), std::vector<std::string> arguments) {
-    CLI::App app;
-    int status = -1;
-    add(Command(app), status);
-    std::ranges::reverse(arguments);  // CLI11 takes them from the end
-    testing::internal::CaptureStdout();
-    std::string sentence;
-    try {
-      app.parse(arguments);
-    } catch (const std::exception& e) {
-      sentence = e.what();
-    }
-    testing::internal::GetCapturedStdout();
-    return sentence;
+    return tests::parsed(add, std::move(arguments)).refusal;
   }
   std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
 

@@ -1,12 +1,12 @@
 // tests/server/cli/own_robot_test.cpp: the user's own robots on the command line.
-#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "tests/server/cli/parsed.hpp"
 #include "tests/temporary_folder.hpp"
-#include <CLI/CLI.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -41,19 +41,8 @@ class OwnRobotTest : public testing::Test {
 
   /// The sentence that refuses these arguments; else "status N".
   static std::string outcome(void (*add)(Command, int&), std::vector<std::string> arguments) {
-    CLI::App app;
-    int status = -1;
-    add(Command(app), status);
-    std::ranges::reverse(arguments);  // CLI11 takes them from the end
-    testing::internal::CaptureStdout();
-    std::string sentence;
-    try {
-      app.parse(arguments);
-    } catch (const std::exception& e) {
-      sentence = e.what();
-    }
-    testing::internal::GetCapturedStdout();
-    return sentence.empty() ? "status " + std::to_string(status) : sentence;
+    const tests::Parsed out = tests::parsed(add, std::move(arguments));
+    return out.refusal.empty() ? "status " + std::to_string(out.status) : out.refusal;
   }
 
  private:
