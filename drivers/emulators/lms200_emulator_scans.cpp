@@ -1,10 +1,10 @@
 // drivers/emulators/lms200_emulator_scans.cpp: measured values of an LMS200 and their telegrams.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 #include <utility>
 
+#include "algo/units.hpp"
 #include "drivers/emulators/lms200_emulator.hpp"
 #include "drivers/emulators/lms200_words.hpp"
 
@@ -52,12 +52,12 @@ std::uint16_t Emulator::word_of(const algo::LaserScan& scan, std::size_t beam) c
 }
 
 void Emulator::convert(const algo::LaserScan& scan, std::optional<std::uint8_t> part) {
-  constexpr double kDegree = std::numbers::pi / 180;
+  using algo::units::kRadiansPerDegree;
   const std::size_t values =
       part ? variant_.angle_degrees + (*part == 0 ? 1U : 0U) : variant_.beams();
-  const double step = (part ? 100 : variant_.step_centidegrees) / 100.0 * kDegree;
-  const double first =
-      -variant_.angle_degrees / 2.0 * kDegree + (part ? *part * 0.25 * kDegree : 0.0);
+  const double step = (part ? 100 : variant_.step_centidegrees) / 100.0 * kRadiansPerDegree;
+  const double first = -variant_.angle_degrees / 2.0 * kRadiansPerDegree +
+                       (part ? *part * 0.25 * kRadiansPerDegree : 0.0);
   const auto layout = layout_of(configuration_.measuring_mode());
   words_.assign(values, layout ? layout->top : std::uint16_t{0});
   for (std::size_t i = 0; i < values; ++i) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "algo/units.hpp"
 #include "drivers/p2os_protocol.hpp"
 
 namespace drivers::p2os {
@@ -21,7 +22,8 @@ constexpr std::uint8_t kMoving = 0x33;
 constexpr std::uint8_t kEncoders = 0x90;
 constexpr std::uint8_t kConfiguration = 0x20;
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180;
+using algo::units::kRadiansPerDegree;
+
 constexpr double kTopSpeed = 2.2;                          // [m/s] for any command
 constexpr double kTopTurn = 500 * kRadiansPerDegree;       // [rad/s]
 constexpr double kHardStop = 2.0;                          // [m/s2] with the brakes

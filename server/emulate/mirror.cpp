@@ -10,7 +10,7 @@
 namespace server::emulate {
 namespace {
 
-constexpr double kDegree = algo::units::kRadiansPerDegree;
+using algo::units::kRadiansPerDegree;
 /// [m] The largest distance of a packed beam. The device applies the limit of its measuring mode.
 constexpr double kFarthest = 65.5;
 
@@ -26,7 +26,7 @@ double Mirror::memory() {
 
 /// [rad] From the middle of a scan to the middle of a part: all parts but the first lack one beam.
 double Mirror::offset(std::uint8_t part) {
-  return part == 0 ? 0 : (part * 0.25 - 0.5) * kDegree;
+  return part == 0 ? 0 : (part * 0.25 - 0.5) * kRadiansPerDegree;
 }
 
 std::uint64_t Mirror::turn_of(const algo::LaserScan& scan) const {
@@ -40,13 +40,13 @@ sim::LaserConfig Mirror::config_for(const drivers::lms200::Variant& variant,
   sim::LaserConfig config = scenario_.robot.sensors.lasers[index_];
   config.rolling = true;
   config.range_max = kFarthest;
-  config.field_of_view = variant.angle_degrees * kDegree;
-  config.angle_increment = variant.step_centidegrees / 100.0 * kDegree;
+  config.field_of_view = variant.angle_degrees * kRadiansPerDegree;
+  config.angle_increment = variant.step_centidegrees / 100.0 * kRadiansPerDegree;
   config.turns = variant.turns();
   if (part) {
     config.turns = 1;
-    config.angle_increment = kDegree;
-    if (*part > 0) config.field_of_view -= kDegree;
+    config.angle_increment = kRadiansPerDegree;
+    if (*part > 0) config.field_of_view -= kRadiansPerDegree;
     config.mount_R.heading += offset(*part);
   }
   return config;

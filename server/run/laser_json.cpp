@@ -40,7 +40,7 @@ constexpr Field<Laser> kLaser[] = {
     {"pepper", &Laser::pepper, {0, 1}},
 };
 
-constexpr double kDegree = algo::units::kRadiansPerDegree;
+using algo::units::kRadiansPerDegree;
 
 /// The resolution [deg] of the LMS200 that has the beams and the mirror of `laser`.
 std::optional<double> lms200_mode(const Laser& laser) {
@@ -56,12 +56,12 @@ std::optional<double> lms200_mode(const Laser& laser) {
 
 /// The degrees that are read back as exactly `radians`; the shorter number if there are several.
 double degrees_of(double radians) {
-  const double degrees = radians / kDegree;
+  const double degrees = radians / kRadiansPerDegree;
   for (const double each : {std::round(degrees * 1e9) / 1e9,
                             degrees,
                             std::nextafter(degrees, 0.0),
                             std::nextafter(degrees, 1e3)}) {
-    if (each * kDegree == radians) return each;
+    if (each * kRadiansPerDegree == radians) return each;
   }
   return degrees;
 }
@@ -83,7 +83,7 @@ sim::LaserConfig laser_from_json(const JsonReader& in) {
     if (beams < kFewestBeams) {
       in.fail("beams", fmt::format("is {}, must be at least {}", beams, kFewestBeams));
     }
-    laser = sim::LaserConfig::flat(in.number("field_of_view_deg", {1.0, 360.0}) * kDegree,
+    laser = sim::LaserConfig::flat(in.number("field_of_view_deg", {1.0, 360.0}) * kRadiansPerDegree,
                                    static_cast<std::uint32_t>(beams),
                                    30.0);
   }

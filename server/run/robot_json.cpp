@@ -2,9 +2,9 @@
 #include "server/run/robot_json.hpp"
 
 #include <algorithm>
-#include <numbers>
 #include <string>
 
+#include "algo/units.hpp"
 #include "server/run/arm_json.hpp"
 #include "server/run/json_fields.hpp"
 #include "server/run/library_files.hpp"
@@ -42,15 +42,15 @@ constexpr Field<Model> kLimits[] = {
     {"turn_jerk", &Model::max_angular_jerk, kJerk},
 };
 
-constexpr double kDegrees = std::numbers::pi / 180;
+using algo::units::kRadiansPerDegree;
 constexpr NumberRange kSlopeDegrees{0, 60};
 using Climbs = algo::ClimbLimits;
 constexpr Field<Climbs> kClimbs[] = {
     required("step_up", &Climbs::step_up, {0, 1}),
     required("step_down", &Climbs::step_down, {0, 1}),
     required("trench", &Climbs::trench, {0, 2}),
-    {"slope_up_deg", &Climbs::slope_up, kSlopeDegrees, kDegrees, true},
-    {"slope_down_deg", &Climbs::slope_down, kSlopeDegrees, kDegrees, true},
+    {"slope_up_deg", &Climbs::slope_up, kSlopeDegrees, kRadiansPerDegree, true},
+    {"slope_down_deg", &Climbs::slope_down, kSlopeDegrees, kRadiansPerDegree, true},
 };
 
 void read_hull(const JsonReader& in, sim::RobotModel& robot) {

@@ -25,18 +25,18 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kDegree = algo::units::kRadiansPerDegree;
+using algo::units::kRadiansPerDegree;
 
 using Sonar = sim::SonarConfig;
 constexpr Field<Sonar> kSonar[] = {
     {"count", &Sonar::count, {0, 64}},
-    {"field_deg", &Sonar::field, {0, 360}, kDegree},
-    {"cone_deg", &Sonar::cone, {0, 360}, kDegree},
+    {"field_deg", &Sonar::field, {0, 360}, kRadiansPerDegree},
+    {"cone_deg", &Sonar::cone, {0, 360}, kRadiansPerDegree},
     {"ping", &Sonar::ping},
     {"range_min", &Sonar::range_min},
     {"range_max", &Sonar::range_max},
     {"noise", &Sonar::noise},
-    {"incidence_deg", &Sonar::incidence, {0, 360}, kDegree},
+    {"incidence_deg", &Sonar::incidence, {0, 360}, kRadiansPerDegree},
     {"crosstalk", &Sonar::crosstalk},
     {"height", &Sonar::height},
 };
@@ -46,7 +46,7 @@ constexpr Field<Infrared> kInfrared[] = {
     {"mount"},
     {"height", &Infrared::height},
     {"beams", &Infrared::beams, {0, 361}},
-    {"field_deg", &Infrared::field, {0, 360}, kDegree},
+    {"field_deg", &Infrared::field, {0, 360}, kRadiansPerDegree},
     {"period", &Infrared::period},
     {"range_min", &Infrared::range_min},
     {"range_max", &Infrared::range_max},
@@ -58,7 +58,7 @@ constexpr Field<Floor> kFloor[] = {
     {"x", &Floor::x},
     {"height", &Floor::height},
     {"half_spacing", &Floor::half_spacing},
-    {"angle_deg", &Floor::angle, {0, 90}, kDegree},
+    {"angle_deg", &Floor::angle, {0, 90}, kRadiansPerDegree},
     {"separation", &Floor::separation},
     {"noise", &Floor::noise},
     {"spot", &Floor::spot},
@@ -77,9 +77,9 @@ using LineCamera = sim::LineCameraConfig;
 constexpr Field<LineCamera> kLineCamera[] = {
     required<LineCamera>("x", &LineCamera::x, {}),
     required<LineCamera>("height", &LineCamera::height, {}),
-    {"pitch_deg", &LineCamera::pitch, {0, 360}, kDegree, true},
+    {"pitch_deg", &LineCamera::pitch, {0, 360}, kRadiansPerDegree, true},
     required<LineCamera>("baseline", &LineCamera::baseline, {}),
-    {"angle_deg", &LineCamera::angle, {0, 360}, kDegree, true},
+    {"angle_deg", &LineCamera::angle, {0, 360}, kRadiansPerDegree, true},
     required<LineCamera>("focal", &LineCamera::focal, {}),
     {"columns"},
     {"rows"},
@@ -90,7 +90,7 @@ constexpr Field<LineCamera> kLineCamera[] = {
 
 using Inclinometer = sim::InclinometerConfig;
 constexpr Field<Inclinometer> kInclinometer[] = {
-    {"noise_deg", &Inclinometer::noise, {0, 360}, kDegree},
+    {"noise_deg", &Inclinometer::noise, {0, 360}, kRadiansPerDegree},
     {"lag", &Inclinometer::lag},
     {"period", &Inclinometer::period},
 };

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "algo/units.hpp"
 #include "sim/bullet_vehicle.hpp"
 
 namespace server::climb {
@@ -20,7 +20,7 @@ constexpr double kWide = 4.0;         // [m]
 constexpr double kFar = 12.0;         // [m] a platform's other end
 constexpr double kSettled = 0.01;     // [m] of the height at the end
 constexpr double kMillimetre = 1e-3;  // [m]
-constexpr double kDegree = std::numbers::pi / 180;
+using algo::units::kRadiansPerDegree;
 constexpr double kHighest = 0.3;  // [m] of all steps and trenches tried
 constexpr double kSteepest = 45;  // [degrees]
 
@@ -102,8 +102,8 @@ algo::ClimbLimits measure(const sim::RobotModel& robot) {
   return {largest(robot, Ground::StepUp, kMillimetre, kHighest),
           largest(robot, Ground::StepDown, kMillimetre, kHighest),
           largest(robot, Ground::Trench, kMillimetre, kHighest),
-          largest(robot, Ground::SlopeUp, kDegree, kSteepest * kDegree),
-          largest(robot, Ground::SlopeDown, kDegree, kSteepest * kDegree)};
+          largest(robot, Ground::SlopeUp, kRadiansPerDegree, kSteepest * kRadiansPerDegree),
+          largest(robot, Ground::SlopeDown, kRadiansPerDegree, kSteepest * kRadiansPerDegree)};
 }
 
 }  // namespace server::climb

@@ -1,9 +1,9 @@
 // server/lab/mapping/map_document.cpp: the figures as tables: on the terminal and as Markdown.
-#include <numbers>
 #include <numeric>
 
 #include <fmt/format.h>
 
+#include "algo/units.hpp"
 #include "server/experiment/table.hpp"
 #include "server/lab/mapping/map_study.hpp"
 #include "server/lab/reproduce/marked.hpp"
@@ -14,7 +14,7 @@ namespace {
 
 using experiment::Table;
 
-constexpr double kDegree = std::numbers::pi / 180;  // [rad]
+using algo::units::kRadiansPerDegree;
 
 constexpr reproduce::Marks kMarks{"<!-- maps: made by the program, not by hand -->\n",
                                   "<!-- end of the maps -->\n"};
@@ -138,8 +138,8 @@ std::string relation_sentence(const MapStudy& study) {
       error.count,
       error.translation_mean,
       error.translation_sd,
-      error.rotation_mean / kDegree,
-      error.rotation_sd / kDegree);
+      error.rotation_mean / kRadiansPerDegree,
+      error.rotation_sd / kRadiansPerDegree);
 }
 
 }  // namespace
