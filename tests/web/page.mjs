@@ -38,7 +38,7 @@ export async function open(browser, base, { size = desktop, theme = usual_theme,
   const faults = [];
   page.on("console", (m) => {
     // The software renderer's own warning about reading pixels is no fault of the page.
-    if (["error", "warning"].includes(m.type()) && !/ReadPixels/.test(m.text())) faults.push(`${m.type()}: ${m.text()}`);
+    if (["error", "warning"].includes(m.type()) && !/ReadPixels/.test(m.text())) faults.push(`${m.type()}: ${m.text()} ${m.location().url.replace(/^.*:\d+/, "")}`);
   });
   page.on("pageerror", (e) => faults.push(`exception: ${e.message}`));
   if (reads) await page.addInitScript(read_scene);

@@ -14,13 +14,13 @@ const settled = () => new Promise((resolve) => setImmediate(resolve));
 function watching() {
   const timers = hand_wound();
   const kept = globalThis.fetch;
-  const server = { asked: [] as string[], down: false, tick: 20, recorded_to: Infinity };
+  const server = { asked: [] as string[], down: false, tick: 20, recorded_to: Infinity, run: 1 };
   const spec = (tick: number): FrameSpec => ({ tick, pose: [tick / 100, 0, 0],
     requests: tick === 15 ? [add_cylinder(7, 1, 1, 0.2)] : tick === 130 ? [add_cylinder(8, 2, 1, 0.2)] : [] });
   globalThis.fetch = (async (path: string) => {
     server.asked.push(path.replace("/api/v1/runs/1/", ""));
     if (server.down) throw new Error("down");
-    if (path.endsWith("/session")) return new Response(JSON.stringify({ tick: server.tick }));
+    if (path.endsWith("/session")) return new Response(JSON.stringify({ run: { id: server.run }, tick: server.tick }));
     const [from, limit] = [...path.matchAll(/=(\d+)/g)].map((m) => Number(m[1]));
     if (path.includes("/ticks")) {
       const items = Array.from({ length: 5 }, (_, i) => ({ t: (from + i) * 0.026, tick: from + i, x: (from + i) / 100, y: 0 }));
@@ -126,6 +126,17 @@ test("a paused run whose record comes late is shown once the record holds it", a
   const asked = w.server.asked.length;
   await w.later(600);
   assert.equal(w.server.asked.length, asked, "asks no more");
+  Reflect.deleteProperty(globalThis, "location");
+  w.end();
+});
+
+test("a run that the session has left is not asked for: the record may not hold it", async () => {
+  const w = watching();
+  Object.assign(globalThis, { location: { search: "" } });
+  w.server.run = 2;
+  void w.past.fetch_newest();
+  await w.later(600);
+  assert.deepEqual(w.server.asked, ["/api/v1/session"]);
   Reflect.deleteProperty(globalThis, "location");
   w.end();
 });

@@ -83,9 +83,10 @@ export class Past {
     const { run } = this.scene_;
     if (run === null || run <= 0 || this.scene_.frame) return;
     try {
-      const { tick } = await rest.get<{ tick?: number }>(session_path());
-      if (tick === undefined) return;
-      const frames = await recent(run, "frames", tick);
+      const now = await rest.get<{ run?: { id: number }; tick?: number }>(session_path());
+      // A run that was left before its first recorded tick has no record any more.
+      if (now.tick === undefined || now.run?.id !== run) return;
+      const frames = await recent(run, "frames", now.tick);
       if (this.scene_.frame || run !== this.scene_.run) return; // a live frame came meanwhile
       for (const frame of decode_frames(frames)) {
         fold_frame(this.scene_, frame);
