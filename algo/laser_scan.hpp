@@ -22,6 +22,7 @@ enum class Beam : std::uint8_t {
 enum class BeamCode : std::uint8_t {
   None = 0,
   Unknown = 1,
+  OtherSensor = 2,  // an Ok beam whose distance another sensor measured: see SensorMerge
   BeyondRange = 7,
   ReadError = 0xA,
   WeakSignal = 0xB,
@@ -42,10 +43,14 @@ struct LaserScan {
   std::uint32_t turns = 1;        // interlaced turns in a sweep
   std::vector<double> ranges{};   // [m] B values; range_max where not Ok
   std::vector<Beam> status{};     // B values
-  std::vector<BeamCode> codes{};  // B values, None where Ok
+  std::vector<BeamCode> codes{};  // B values; None or OtherSensor where Ok
 
   std::size_t size() const { return ranges.size(); }
   double angle(std::size_t i) const { return angle_min + static_cast<double>(i) * angle_increment; }
+  /// True if the scanner itself measured beam `i`'s distance.
+  bool measured(std::size_t i) const {
+    return status[i] == Beam::Ok && codes[i] != BeamCode::OtherSensor;
+  }
   /// [s] Duration of the whole sweep.
   double sweep_time() const { return turn_period * static_cast<double>(turns); }
   /// [s] Run-clock time at which beam `i` was fired: turn i % turns, (angle + 90 deg) / 360 of it.
@@ -61,6 +66,9 @@ struct LaserScan {
     codes.resize(beams);
   }
   void set_ok(std::size_t i, double range) { set(i, Beam::Ok, range, BeamCode::None); }
+  void set_from_other_sensor(std::size_t i, double range) {
+    set(i, Beam::Ok, range, BeamCode::OtherSensor);
+  }
   void set_free(std::size_t i) { set(i, Beam::Free, range_max, BeamCode::BeyondRange); }
   void set_invalid(std::size_t i, BeamCode code) { set(i, Beam::Invalid, range_max, code); }
 

@@ -84,7 +84,7 @@ void SensorMerge::enter(const Pose2& pose_W, double now, LaserScan& scan) {
     const BeamSpan filled = beams_between(scan, kept.bearing - kHalfBeam, kept.bearing + kHalfBeam);
     for (std::size_t i = filled.begin; i < filled.end; ++i) {
       const bool nearer = scan.status[i] == Beam::Ok && scan.ranges[i] <= kept.range;
-      if (!nearer) scan.set_ok(i, kept.range);
+      if (!nearer) scan.set_from_other_sensor(i, kept.range);
     }
   }
 }

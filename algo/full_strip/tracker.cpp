@@ -166,7 +166,7 @@ void Tracker::cluster(const LaserScan& scan,
   clusters_.clear();
   std::size_t first = 0;
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (scan.status[i] != Beam::Ok) {
+    if (!scan.measured(i)) {
       if (i > first) close(first, i - 1, sensor_W, points_W);
       first = i + 1;
       continue;
@@ -345,8 +345,8 @@ void Tracker::memorise(const LaserScan& scan, const Pose2& sensor_W, double stam
   memory.angle_increment = scan.angle_increment;
   memory.ranges.resize(scan.size());
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    const bool measured = scan.status[i] != Beam::Invalid;
-    memory.ranges[i] = measured ? static_cast<float>(scan.ranges[i]) : 0.0F;
+    const bool looked = scan.status[i] == Beam::Free || scan.measured(i);
+    memory.ranges[i] = looked ? static_cast<float>(scan.ranges[i]) : 0.0F;
   }
 }
 

@@ -27,7 +27,9 @@ struct Track {
 
 /// A round body at least as thick as a person counts as possibly moving from its first scan on,
 /// until it has stood for a while. Any other cluster counts as moving only once it has travelled at
-/// a speed that its uncertainty does not explain. Static obstacles belong to the map.
+/// a speed that its uncertainty does not explain. Static obstacles belong to the map, and so do
+/// beams that another sensor measured: the scanner looked over them, so its earlier scans cannot
+/// say whether they were there.
 class Tracker {
  public:
   Tracker();

@@ -46,7 +46,10 @@ TEST(SensorMerge, ObstaclesMissedByTheLaserEnterItsBeams) {
   merge.enter({}, 0, scan);
   // 0.3 + 0.8 m ahead of the centre is 1.0 m ahead of the scanner; 1 degree either side is 5 beams.
   EXPECT_EQ(hits(scan), 5U);
-  for (std::size_t i = 178; i <= 182; ++i) EXPECT_NEAR(scan.ranges[i], 1.0, 1e-12) << i;
+  for (std::size_t i = 178; i <= 182; ++i) {
+    EXPECT_NEAR(scan.ranges[i], 1.0, 1e-12) << i;
+    EXPECT_FALSE(scan.measured(i)) << i;
+  }
 }
 
 TEST(SensorMerge, ARepeatedReadingKeepsItsPosition) {

@@ -16,11 +16,13 @@ namespace {
 using algo::Track;
 using algo::Vec2;
 
-constexpr double kPeriod = 0.05;  // [s]
+constexpr double kPeriod = 0.05;   // [s]
+constexpr double kInfrared = 2.0;  // [m]
 
 /// A scanner, at first at the origin, in a changing `world`.
 struct Watch {
   worlds::World world{};
+  worlds::World low{};  // things below the scanner's plane, which infrared sees within kInfrared
   algo::Pose2 sensor_W{};
   algo::Tracker tracker{};
   algo::LaserScan scan{};
@@ -29,6 +31,7 @@ struct Watch {
 
   void tick() {
     worlds::scan_world(sensor_W, world, 8, scan);
+    enter_low();
     points_W.resize(scan.size());
     for (std::size_t i = 0; i < scan.size(); ++i) {
       points_W[i] =
@@ -37,6 +40,13 @@ struct Watch {
     scan.stamp = stamp;
     tracker.update(scan, sensor_W, points_W);
     stamp += kPeriod;
+  }
+  void enter_low() {
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      const Vec2 e = algo::direction(sensor_W.heading + scan.angle(i));
+      const double range = worlds::cast(sensor_W.position(), e, low);
+      if (range < std::min(kInfrared, scan.ranges[i])) scan.set_from_other_sensor(i, range);
+    }
   }
   void run(double seconds, const std::function<void(double)>& move) {
     const double end = stamp + seconds;
@@ -160,6 +170,19 @@ TEST(Tracker, APassedThicketDoesNotMove) {
     });
     EXPECT_EQ(moving, 0) << "ticks, in thicket " << thicket;
   }
+}
+
+/// The scanner looks over a low thing: it appears where infrared begins to see it.
+TEST(Tracker, WhatTheScannerLooksOverBelongsToTheMap) {
+  Watch watch;
+  watch.low.circles = {{{3, 0.2}, 0.3}, {{3.5, -0.8}, 0.15}};
+  watch.world.circles.push_back({{6, 0.5}, 0.1});
+  std::size_t tracked = 0;
+  watch.run(3.0, [&](double t) {
+    watch.sensor_W = {0.8 * t, 0, 0.2 * std::sin(2 * t)};
+    tracked += watch.tracker.moving().size();
+  });
+  EXPECT_EQ(tracked, 0U);
 }
 
 /// The corner of a box or a jamb, seen from its side, fits a circle within the noise of a scan.
