@@ -53,9 +53,12 @@ net::Response list_experiments(ApiContext& context, const net::Request&, Worker&
   return json_response(200, {{"items", std::move(items)}, {"next", nullptr}});
 }
 
-net::Response post_experiment(ApiContext& context, const net::Request& request, Worker&) {
-  const Experiments::Posted posted = context.experiments.post(
-      body_json(request), std::string(request.header("Idempotency-Key")), request.person);
+net::Response post_experiment(ApiContext& context, const net::Request& request, Worker& worker) {
+  const Experiments::Posted posted =
+      context.experiments.post(body_json(request),
+                               std::string(request.header("Idempotency-Key")),
+                               request.person,
+                               worker.stop());
   const ExperimentInfo info = posted.experiment->info();
   net::Response response =
       json_response(info.state == ExperimentState::Finished ? 200 : 202, to_json(info));
@@ -210,7 +213,7 @@ net::Response get_events(ApiContext& context, const net::Request& request, Worke
 
 void add_experiment_routes(Routes& routes) {
   routes.make("GET", "/experiments", list_experiments);
-  routes.make("POST", "/experiments", post_experiment);
+  routes.make_in_turn("POST", "/experiments", post_experiment);
   routes.make("POST", "/experiments/estimate", post_estimate);
   routes.make("GET", "/experiments/{id}", get_experiment);
   routes.make("DELETE", "/experiments/{id}", delete_experiment);

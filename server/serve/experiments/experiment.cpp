@@ -267,6 +267,11 @@ bool Experiment::at_work() const {
   return at_work_ > 0;
 }
 
+std::size_t Experiment::worlds() const {
+  const std::lock_guard lock(mutex_);
+  return plan_ ? plan_->document().scenarios.size() : 0;
+}
+
 /// Others may then open the file. Holds mutex_.
 void Experiment::close_log_if_idle() {
   if (info_.state != ExperimentState::Running && at_work_ == 0) log_.reset();

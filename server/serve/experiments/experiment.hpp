@@ -83,6 +83,8 @@ class Experiment {
   void take(std::size_t run, const experiment::Row& row);
   void put_back(std::size_t run);
   bool at_work() const;
+  /// Of its plan, while that is in memory.
+  std::size_t worlds() const;
 
   /// The plan and the rows so far, read from the folder if need be. Throws as resume().
   std::shared_ptr<const sweep::Plan> plan();

@@ -97,7 +97,8 @@ TEST_F(AppTest, TheDescriptionListsExactlyTheRoutes) {
                      .experiments = experiments,
                      .queue = queue,
                      .recorder = recorder,
-                     .workers = workers};
+                     .workers = workers,
+                     .checker = workers};
   net::Server server({.port = 0});  // adds the login itself
   add_api(server.router(), context);
   std::multiset<std::string> routes;

@@ -302,6 +302,53 @@ TEST_F(ExperimentsTest, ACancelledOneStopsItsRunWhichIsMadeAgainWhenResumed) {
   EXPECT_EQ(forever->info().state, ExperimentState::Running);
 }
 
+/// So many worlds, each with many robots, which take long to make.
+json crowded(const char* name, int worlds, int robots) {
+  json crowd = document(name, 1);
+  const json one = crowd["scenarios"][0];
+  crowd["scenarios"] = json::array();
+  for (int i = 0; i < worlds; ++i) {
+    json& world = crowd["scenarios"].emplace_back(one);
+    world["name"] = "crowd-" + std::to_string(i);
+    for (int k = 0; k < robots; ++k) {
+      world["robots"].push_back({{"start", {{"x", 2 * (k % 14)}, {"y", 3 + 2 * (k / 14)}}}});
+    }
+  }
+  crowd["physics"] = "bullet";
+  return crowd;
+}
+
+TEST_F(ExperimentsTest, TheCheckOfManyWorldsEndsWithTheServer) {
+  Experiments experiments(rules(), library);
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_THROW(experiments.post(crowded("crowd", 400, 150), "", "", stop.get_token()),
+               std::runtime_error);
+  EXPECT_TRUE(experiments.list().empty());
+}
+
+TEST_F(ExperimentsTest, RunningOnesHaveALimitedNumberOfWorlds) {
+  ExperimentRules few = rules();
+  few.most_worlds = 5;
+  Experiments experiments(few, library);
+  json three = endless("three");
+  three["scenarios"] = {{{"random_layouts", {{"count", 3}}}}};
+  const std::string id = experiments.post(three, "", "").experiment->info().id;
+  json other = three;
+  other["name"] = "other";
+  EXPECT_THAT([&] { experiments.post(other, "", ""); },
+              ThrowsMessage<net::HttpError>(HasSubstr("would have 6 worlds; at most 5")));
+  experiments.pause(id);
+  experiments.post(other, "", "");
+  EXPECT_THAT([&] { experiments.resume(id); },
+              ThrowsMessage<net::HttpError>(HasSubstr("6 worlds")));
+  json many = three;
+  many["scenarios"] = {{{"random_layouts", {{"count", 9000}}}},
+                       {{"random_layouts", {{"count", 1001}}}}};
+  EXPECT_THAT([&] { experiments.post(many, "", ""); },
+              ThrowsMessage<DocumentError>(HasSubstr("scenarios: are 10001; a server takes")));
+}
+
 TEST_F(ExperimentsTest, OneEstimateIsMadeAtATimeAndEndsWithTheServer) {
   Experiments experiments(rules(), library);
   json slow = everlasting("slow");

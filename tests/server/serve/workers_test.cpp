@@ -142,6 +142,7 @@ class BusyWorkers : public ::testing::Test {
                 .scheduler = scheduler,
                 .frames = std::make_shared<FrameRoom>(1024)},
        .workers = workers,
+       .checker = workers,
        .to_io = [this](std::function<void()> work) { running.server.post(std::move(work)); },
        .ring = [] {}},
       {}};
@@ -152,6 +153,7 @@ class BusyWorkers : public ::testing::Test {
                      .queue = queue,
                      .recorder = recorder,
                      .workers = workers,
+                     .checker = workers,
                      .first = make_spec(library.load("case1"), {}),
                      .server = &running.server,
                      .log_tail = [] { return std::vector<std::string>{}; }};
