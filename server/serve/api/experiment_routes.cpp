@@ -120,7 +120,7 @@ net::Response delete_experiment(ApiContext& context, const net::Request& request
 /// results.json, of its scenarios only the asked one: a page shows one at a time.
 net::Response get_results(ApiContext& context, const net::Request& request, Worker&) {
   const std::shared_ptr<Experiment> experiment = experiment_of(context, request);
-  const std::shared_ptr<const json> results = experiment->write_report();
+  const std::shared_ptr<const json> results = experiment->write_report().results;
   context.experiments.looked_at(experiment);
   json body = json::object();
   for (const auto& [key, value] : results->items()) {
@@ -164,7 +164,8 @@ net::Response file_of(ApiContext& context, const net::Request& request, const ch
   const fs::path file = experiment->folder() / folder / name;
   const bool one_of_ours = name.find('/') == std::string::npos && is_result(name);
   if (one_of_ours) {
-    experiment->write_report();
+    const std::string problem = experiment->write_report().problem;
+    if (!problem.empty()) throw net::HttpError(503, problem);
     context.experiments.looked_at(experiment);
   }
   const auto in = std::make_shared<std::ifstream>();

@@ -14,6 +14,7 @@
 #include "server/experiment/sweep/scenario_entries.hpp"
 #include "server/record/run_json.hpp"
 #include "server/run/json_reader.hpp"
+#include "server/run/paths.hpp"
 #include "server/serve/net/http.hpp"
 #include "server/serve/workers.hpp"
 
@@ -127,6 +128,19 @@ std::shared_ptr<Experiment> Experiments::with_key(const std::string& key) const 
   return it == all_.end() ? nullptr : it->second;
 }
 
+/// Leaves no folder without an experiment. Holds mutex_.
+std::shared_ptr<Experiment> Experiments::make(sweep::Plan plan, ExperimentInfo info) const {
+  const fs::path folder = rules_.folder / info.id;
+  std::error_code error;
+  const bool was_there = fs::exists(folder, error);
+  try {
+    return std::make_shared<Experiment>(folder, std::move(plan), std::move(info));
+  } catch (const std::exception& e) {
+    if (!was_there) fs::remove_all(folder, error);
+    throw net::HttpError(503, without_folders(e.what()));
+  }
+}
+
 /// Refuses more worlds than it may have before it makes any.
 sweep::Document Experiments::read(const nlohmann::json& document) const {
   const JsonReader in(document, "");
@@ -167,8 +181,7 @@ Experiments::Posted Experiments::post(const nlohmann::json& document,
     } else {
       check_turns(plan.document().scenarios.size());
       make_room(bytes);
-      const fs::path folder = rules_.folder / info.id;
-      posted.experiment = std::make_shared<Experiment>(folder, std::move(plan), std::move(info));
+      posted.experiment = make(std::move(plan), std::move(info));
       posted.created = true;
       all_[posted.experiment->info().id] = posted.experiment;
     }

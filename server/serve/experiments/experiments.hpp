@@ -80,6 +80,7 @@ class Experiments {
 
  private:
   void read_folder();
+  std::shared_ptr<Experiment> make(sweep::Plan plan, ExperimentInfo info) const;
   sweep::Document read(const nlohmann::json& document) const;
   void check_turns(std::size_t worlds) const;
   void make_room(std::uint64_t bytes);

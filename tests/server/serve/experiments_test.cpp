@@ -145,7 +145,7 @@ TEST_F(ExperimentsTest, ItsCopiesOutliveTheRobotsAndScenariosOfTheUser) {
     write_text(user / "mine.json", R"({"name":"mine","goal":{"x":2,"y":0}})");
     if (gone) fs::remove_all(user);
     Experiments experiments(rules(), own);
-    EXPECT_EQ(experiments.find(id)->write_report()->at("runs"), 8) << gone;
+    EXPECT_EQ(experiments.find(id)->write_report().results->at("runs"), 8) << gone;
     experiments.resume(id);
     EXPECT_EQ(experiments.find(id)->info().state, ExperimentState::Finished) << gone;
   }
@@ -237,7 +237,7 @@ TEST_F(ExperimentsTest, IsReadWhileItsMemoryIsGivenBack) {
     EXPECT_EQ(experiment.plan()->size(), 4U);
     experiment.look(
         [](const sweep::Plan&, const sweep::Rows& rows) { EXPECT_EQ(rows.size(), 4U); });
-    EXPECT_EQ(experiment.write_report()->at("runs"), 4);
+    EXPECT_EQ(experiment.write_report().results->at("runs"), 4);
   }
 }
 
@@ -300,6 +300,35 @@ TEST_F(ExperimentsTest, ACancelledOneStopsItsRunWhichIsMadeAgainWhenResumed) {
   experiments.resume(id);
   EXPECT_TRUE(comes([&] { return forever->at_work(); }));
   EXPECT_EQ(forever->info().state, ExperimentState::Running);
+}
+
+TEST_F(ExperimentsTest, OnesThatCannotWriteStillEndAreReadAndGo) {
+  Experiments experiments({.folder = folder(), .workers = 1}, library);
+  const std::shared_ptr<Experiment> forever =
+      experiments.post(everlasting("forever"), "", "").experiment;
+  const std::string id = forever->info().id;
+  ASSERT_TRUE(comes([&] { return forever->at_work(); }));
+  // As on a full disk, for a user whom no permission stops.
+  fs::create_directory(forever->folder() / "state.json.new");
+  fs::create_directory(forever->folder() / "runs.csv");
+  const Experiment::Report report = forever->write_report();
+  EXPECT_EQ(report.results->at("runs"), 1);
+  EXPECT_EQ(report.problem, "runs.csv: cannot be written");
+  experiments.cancel(id);
+  EXPECT_EQ(forever->info().state, ExperimentState::Cancelled);
+  EXPECT_EQ(forever->info().problem, "state.json.new: cannot be written");
+  ASSERT_TRUE(comes([&] { return !forever->at_work(); }));
+  experiments.resume(id);
+  ASSERT_TRUE(comes([&] { return forever->at_work(); }));
+  experiments.remove(id);
+  EXPECT_TRUE(comes([&] { return !fs::exists(forever->folder()); }));
+}
+
+TEST_F(ExperimentsTest, ANewOneThatCannotBeWrittenIsRefused) {
+  write_text(folder().parent_path() / "file", "no folder");
+  Experiments experiments({.folder = folder().parent_path() / "file", .workers = 1}, library);
+  EXPECT_THROW(experiments.post(document("new", 1), "", ""), net::HttpError);
+  EXPECT_TRUE(experiments.list().empty());
 }
 
 /// So many worlds, each with many robots, which take long to make.
