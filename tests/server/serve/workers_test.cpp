@@ -142,7 +142,6 @@ class BusyWorkers : public ::testing::Test {
                 .scheduler = scheduler,
                 .frames = std::make_shared<FrameRoom>(1024)},
        .workers = workers,
-       .checker = workers,
        .to_io = [this](std::function<void()> work) { running.server.post(std::move(work)); },
        .ring = [] {}},
       {}};
