@@ -1,5 +1,6 @@
 // tests/server/serve/app_experiments_test.cpp: documents of experiments that REST refuses.
 #include <atomic>
+#include <chrono>
 #include <string>
 #include <thread>
 #include <tuple>
@@ -107,6 +108,7 @@ TEST_F(AppExperiments, ChecksOfLargeOnesKeepNoOtherAnswerWaiting) {
       --checking;
     });
   }
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // until all are there
   int answers = 0;  // while all the checks go on
   for (; checking == 4; ++answers) get("/runs?limit=1");
   EXPECT_GT(answers, 5);
