@@ -55,8 +55,8 @@ class Plan {
   std::string command(std::size_t i) const;
 
   /// Makes the spec of every scenario with every arm, and every world. Throws DocumentError naming
-  /// the scenario and the arm that do not go together, and the reason; std::runtime_error at
-  /// `stop`.
+  /// the scenario and the arm that do not go together, and the reason. `stop` leaves
+  /// the rest unchecked.
   void check(const std::stop_token& stop = {}) const;
 
  private:

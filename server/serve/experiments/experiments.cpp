@@ -160,6 +160,7 @@ Experiments::Posted Experiments::post(const nlohmann::json& document,
                                       const std::stop_token& stop) {
   sweep::Plan plan(read(document));
   plan.check(stop);
+  if (stop.stop_requested()) throw net::HttpError(503, "The server is stopping.");
   ExperimentInfo info{.id = sweep::hash_of(sweep::identity_of(plan.document())),
                       .name = plan.document().name,
                       .by = by,

@@ -51,8 +51,8 @@ class Experiments {
   };
   /// Checks the whole document and starts it. The same document is the same experiment. Throws
   /// DocumentError, or net::HttpError: 409 if `key` has another document, 503 if too many
-  /// run or there is no room for another. May take minutes; `stop` ends the check with an
-  /// exception.
+  /// run or there is no room for another, or at `stop`, as the check may take a
+  /// minute.
   Posted post(const nlohmann::json& document,
               const std::string& key,
               const std::string& by,

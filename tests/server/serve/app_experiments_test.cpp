@@ -109,7 +109,7 @@ TEST_F(AppExperiments, ChecksOfLargeOnesKeepNoOtherAnswerWaiting) {
     });
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(50));  // until all are there
-  int answers = 0;  // while all the checks go on
+  int answers = 0;                                             // while all the checks go on
   for (; checking == 4; ++answers) get("/runs?limit=1");
   EXPECT_GT(answers, 5);
   for (std::thread& client : clients) client.join();

@@ -352,7 +352,7 @@ TEST_F(ExperimentsTest, TheCheckOfManyWorldsEndsWithTheServer) {
   std::stop_source stop;
   stop.request_stop();
   EXPECT_THROW(experiments.post(crowded("crowd", 400, 150), "", "", stop.get_token()),
-               std::runtime_error);
+               net::HttpError);
   EXPECT_TRUE(experiments.list().empty());
 }
 
