@@ -95,7 +95,7 @@ int execute(const RunCommand& options) {
     while (!recorder->flush() && !end_requested()) {
     }
     run_id = headless.record->run();
-    problem = headless.record->failed() ? headless.record->problem() : headless.record->loss();
+    problem = headless.record->incomplete();
   }
   if (options.as_json) {
     json out = {{"scenario", spec.scenario.name},

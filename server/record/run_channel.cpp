@@ -89,9 +89,9 @@ void RunChannel::recover() {
   if (!broken_) failed_.store(false, std::memory_order_release);
 }
 
-std::string RunChannel::loss() const {
+std::string RunChannel::incomplete() const {
   const std::lock_guard lock(mutex_);
-  return loss_;
+  return failed() ? problem_ : loss_;
 }
 
 void RunChannel::lose(const std::string& why) {

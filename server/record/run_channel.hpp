@@ -130,8 +130,9 @@ class RunChannel {
   /// True while frames are not recorded; problem() then says why, as a sentence.
   bool failed() const noexcept { return failed_.load(std::memory_order_acquire); }
   std::string problem() const;
-  /// Why ticks of the run are missing for good, as a sentence; empty: none are missing so far.
-  std::string loss() const;
+  /// problem(), or why ticks of the run are missing for good, as a sentence; empty: none are so
+  /// far.
+  std::string incomplete() const;
   /// State of this run's record as of the last commit; before the first one, `kind` is Off.
   RecordStatus status() const;
 

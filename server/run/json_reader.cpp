@@ -38,7 +38,10 @@ void JsonReader::only(std::span<const std::string_view> known) const {
   for (const auto& [key, unused] : value_.items()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     throw DocumentError(
-        path_, fmt::format("unknown field '{}'; known are {}", key, fmt::join(known, ", ")));
+        path_,
+        known.empty()
+            ? fmt::format("unknown field '{}'; it takes none", key)
+            : fmt::format("unknown field '{}'; known are {}", key, fmt::join(known, ", ")));
   }
 }
 

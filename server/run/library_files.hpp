@@ -10,10 +10,11 @@
 
 namespace server {
 
-/// The document does not exist, may not be changed, or cannot be read. what() is a sentence.
+/// The document does not exist, may not be changed, or cannot be read or kept. what() is a
+/// sentence.
 class LibraryError : public std::runtime_error {
  public:
-  enum class Kind { NotFound, Builtin, BadName, Unreadable };
+  enum class Kind { NotFound, Builtin, BadName, Unreadable, NoRoom };
   LibraryError(Kind kind, const std::string& sentence)
       : std::runtime_error(sentence), kind_(kind) {}
   Kind kind() const { return kind_; }

@@ -21,6 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 using Kind = LibraryError::Kind;
 
+constexpr std::size_t kMostOwn = 1000;
+
 std::mutex writing;  // two concurrent saves must not share a draft
 
 sim::Scenario parse(const std::string& text, const std::string& where, const RobotLibrary& robots) {
@@ -138,13 +140,23 @@ sim::Scenario ScenarioLibrary::save(sim::Scenario scenario) const {
   std::error_code error;
   fs::create_directories(own_, error);
   const fs::path target = own_ / (scenario.name + ".json");
+  if (!fs::exists(target, error)) {
+    std::size_t count = 0;
+    for_each_file(own_, ".json", [&](const fs::path&) { ++count; });
+    if (count >= kMostOwn) {
+      throw LibraryError(
+          Kind::NoRoom,
+          fmt::format("You have {} scenarios of your own, as many as may. Delete one.", count));
+    }
+  }
   try {
     if (map) write_map(*map, own_map(scenario.name));
     replace_text(target, text);
     return scenario;
   } catch (const std::exception&) {
-    throw LibraryError(Kind::Unreadable,
-                       fmt::format("Cannot write {}.", target.filename().string()));
+    throw LibraryError(
+        Kind::NoRoom,
+        fmt::format("Cannot write {}. Is the disk full?", target.filename().string()));
   }
 }
 

@@ -47,6 +47,7 @@ struct App::Impl {
         library(options.scenarios, options.logs, RobotLibrary(options.robots)),
         scheduler(options.threads),
         workers(options.database.string()),
+        checker(options.database.string(), 1),
         experiments({.folder = beside(options.database),
                      .keep_bytes = options.keep_bytes,
                      .evict_oldest = options.evict_oldest,
@@ -61,6 +62,7 @@ struct App::Impl {
                 .queue = queue,
                 .recorder = recorder,
                 .workers = workers,
+                .checker = checker,
                 .first = options.first.hardware
                              ? make_spec(library.load("demo"),
                                          {.controllers = options.first.controllers})
@@ -91,6 +93,7 @@ struct App::Impl {
   ~Impl() {
     sessions.end_all();  // first: the robot stops, even if the other parts take long
     workers.stop();
+    checker.stop();
     queue.stop();
     // Posted jobs may still answer through the server, so wait while it exists.
     try {
@@ -129,6 +132,7 @@ struct App::Impl {
   Scheduler scheduler;
   std::unique_ptr<net::Server> server{};  // outlives the workers and the queue, which post to it
   Workers workers;
+  Workers checker;
   Experiments experiments;
   RunQueue queue;
   SessionRegistry sessions;

@@ -190,11 +190,13 @@ void Bridge::add_services() {
       throw std::runtime_error(*refusal);
     }
   };
-  const auto add = [this, heed_driver](const char* name, Action action) {
+  using Fields = std::vector<std::string_view>;
+  const auto add = [this, heed_driver](const char* name, Fields fields, Action action) {
     hub_.add_service(name,
-                     [this, heed_driver, action = std::move(action)](
+                     [this, heed_driver, fields = std::move(fields), action = std::move(action)](
                          ClientId client, const json& body, const ServiceReply& reply) {
                        heed_driver(client);
+                       JsonReader(body, "").only(fields);
                        action(body, hub_.who(client).label());
                        reply.success({{"ok", true}});
                      });
@@ -210,7 +212,8 @@ void Bridge::add_services() {
   });
   hub_.add_service(
       "/clock",
-      [](ClientId, const json&, const ServiceReply& reply) {
+      [](ClientId, const json& body, const ServiceReply& reply) {
+        JsonReader(body, "").only({});
         reply.success({{"ok", true}, {"now", clock_seconds(StickWatch::Clock::now())}});
       },
       net::Role::Viewer);
@@ -232,44 +235,45 @@ void Bridge::add_services() {
         if (!loads_.load(body, answer_when_loaded(reply))) return reply.failure(kBusy);
         tell_deed(session_, hub_.who(client).label(), "loads another run");
       });
-  hub_.add_service("/reset",
-                   [this, heed_driver](ClientId client, const json&, const ServiceReply& reply) {
-                     heed_driver(client);
-                     if (!loads_.reset(answer_when_loaded(reply))) return reply.failure(kBusy);
-                     tell_deed(session_, hub_.who(client).label(), "resets the run");
-                   });
+  hub_.add_service(
+      "/reset", [this, heed_driver](ClientId client, const json& body, const ServiceReply& reply) {
+        heed_driver(client);
+        JsonReader(body, "").only({});
+        if (!loads_.reset(answer_when_loaded(reply))) return reply.failure(kBusy);
+        tell_deed(session_, hub_.who(client).label(), "resets the run");
+      });
   const auto heed_pace = [this] {
     if (const auto refusal = session_.pace_refusal()) throw std::runtime_error(*refusal);
   };
-  add("/pause", [this, heed_pace](const json&, const std::string& who) {
+  add("/pause", {}, [this, heed_pace](const json&, const std::string& who) {
     heed_pace();
     pause(session_, true, who);
   });
   hub_.add_service(
       "/world",
-      [this](ClientId, const json&, const ServiceReply& reply) {
+      [this](ClientId, const json& body, const ServiceReply& reply) {
+        JsonReader(body, "").only({});
         reply.success({{"ok", true}, {"scenario", to_json(session_.as_scenario())}});
       },
       net::Role::Viewer);
-  add("/start", [this](const json& body, const std::string&) {
+  add("/start", {"x", "y", "heading"}, [this](const json& body, const std::string&) {
     if (const auto refusal = set_start(session_, body)) throw std::runtime_error(*refusal);
   });
-  add("/play", [this](const json&, const std::string& who) { pause(session_, false, who); });
-  add("/arm", [this](const json& body, const std::string& who) {
+  add("/play", {}, [this](const json&, const std::string& who) { pause(session_, false, who); });
+  add("/arm", {"armed"}, [this](const json& body, const std::string& who) {
     const JsonReader in(body, "");
-    in.only({"armed"});
     if (!in.has("armed")) in.fail("armed", "must be true or false");
     if (const auto refusal = session_.arm(in.flag_or("armed", false), who)) {
       throw std::runtime_error(*refusal);
     }
   });
-  add("/step", [this, heed_pace](const json& body, const std::string& who) {
+  add("/step", {"ticks"}, [this, heed_pace](const json& body, const std::string& who) {
     heed_pace();
     const JsonReader in(body, "");
     if (!session_.state().pace.paused) session_.credits.pause = who;
     session_.single_step(static_cast<std::uint32_t>(in.whole_or("ticks", 1, 1'000'000)));
   });
-  add("/speed", [this, heed_pace](const json& body, const std::string&) {
+  add("/speed", {"speed"}, [this, heed_pace](const json& body, const std::string&) {
     heed_pace();
     JsonReader(body, "").number("speed");
     session_.set_speed(pace_from_json(body, "speed", 1));

@@ -31,8 +31,10 @@ bool RunQueue::Batch::hold(std::size_t document_bytes) {
 
 RunQueue::RunQueue(Recorder& recorder, unsigned threads)
     : recorder_(recorder),
+      threads_(threads),
       fast_(threads, [this](const auto& stop) { return take(Kind::AsFastAsItGoes, stop); }),
-      paced_(threads, [this](const auto& stop) { return take(Kind::Paced, stop); }) {}
+      paced_(std::max(threads, kPaced),
+             [this](const auto& stop) { return take(Kind::Paced, stop); }) {}
 
 RunQueue::~RunQueue() {
   stop();
@@ -214,10 +216,12 @@ std::string RunQueue::requeue(db::RunStore& store, db::RunId run) {
   }
 }
 
-/// Holds mutex_.
+/// The first whose turn it is: the others of its batch must leave threads to those of other
+/// batches. Holds mutex_.
 std::deque<RunQueue::Job>::iterator RunQueue::first_of(Kind kind) {
-  return std::ranges::find_if(
-      queue_, [&](const Job& job) { return (job.batch->asked.pace > 0) == (kind == Kind::Paced); });
+  return std::ranges::find_if(queue_, [&](const Job& job) {
+    return (job.batch->asked.pace > 0) == (kind == Kind::Paced) && job.batch->at_work < threads_;
+  });
 }
 
 /// The next run of that kind as a job. Waits for a run, and for a store that takes it.
@@ -235,6 +239,7 @@ experiment::Pool::Job RunQueue::take(Kind kind, const std::stop_token& stop) {
     if (next == queue_.end()) continue;  // its run was cancelled meanwhile
     Job job = std::move(*next);
     queue_.erase(next);
+    ++job.batch->at_work;
     auto running = std::make_shared<Running>();
     running_[job.run] = running;
     return [this, job = std::move(job), running = std::move(running), stop] {
@@ -247,6 +252,8 @@ void RunQueue::work_off(const Job& job, Running& running, const std::stop_token&
   const bool begun = execute(job, running);
   std::unique_lock lock(mutex_);
   running_.erase(job.run);
+  --job.batch->at_work;
+  if (job.batch->asked.pace > 0) wake_.notify_all();  // another of its batch has its turn
   if (begun || stop.stop_requested()) return;
   if (running.cancelled) {
     end_later(job.run, {.status = db::RunStatus::Cancelled, .outcome = "stopped"});

@@ -27,9 +27,9 @@ struct RepeatedRun {
 
 /// Queues runs in the database and runs them on its own pools, as trials without judges, so that
 /// neither the io thread nor a live robot waits. Paced runs mostly sleep, some of them for hours:
-/// they have threads of their own, and the others need not wait for them. The queue waits while the
-/// store accepts no runs; its runs can still be cancelled. A restart leaves them `interrupted`;
-/// resume() queues them again.
+/// they have threads of their own, of which the runs of one start() take a part. The queue waits
+/// while the store accepts no runs; its runs can still be cancelled. A restart leaves them
+/// `interrupted`; resume() queues them again.
 class RunQueue {
  public:
   using Accepted =
@@ -39,8 +39,10 @@ class RunQueue {
   /// [bytes] of all queued worlds; repeats share one world.
   static constexpr std::size_t kMaxBytes = std::size_t{192} << 20;
 
-  /// `threads`: for paced runs, and as many for the others. One by default, which leaves a core to
-  /// the io thread, which carries Stop, and to live robots.
+  static constexpr unsigned kPaced = 8;  // threads for paced runs, which mostly sleep
+
+  /// `threads`: for runs without a pace, and for the paced runs of one start(). One by default,
+  /// which leaves a core to the io thread, which carries Stop, and to live robots.
   explicit RunQueue(Recorder& recorder, unsigned threads = 1);
   ~RunQueue();  // interrupts current runs; queued runs stay in the database
 
@@ -81,9 +83,10 @@ class RunQueue {
     db::NewRun row{};
     Accepted accepted{};
     std::vector<db::RunId> runs{};  // used by the database thread until queued
+    unsigned at_work = 0;           // runs; RunQueue::mutex_
   };
   struct Job {
-    std::shared_ptr<const Batch> batch{};
+    std::shared_ptr<Batch> batch{};
     std::uint64_t seed = 0;
     db::RunId run = 0;
     bool again = false;  // ticks of an earlier start must be deleted
@@ -110,6 +113,7 @@ class RunQueue {
   void end_later(db::RunId run, db::RunEnd end);
 
   Recorder& recorder_;
+  const unsigned threads_;
   std::atomic<std::size_t> held_{0};  // [bytes] of all batches; first, as batches refer to it
   std::mutex mutex_{};
   std::condition_variable_any wake_{};

@@ -122,8 +122,9 @@ std::string Plan::command(std::size_t i) const {
   return text;
 }
 
-void Plan::check() const {
+void Plan::check(const std::stop_token& stop) const {
   for (std::size_t s = 0; s < document_.scenarios.size(); ++s) {
+    if (stop.stop_requested()) return;
     const std::string& scenario = document_.scenarios[s].name;
     bool made_world = false;
     for (std::size_t a = 0; a < arms_.size(); ++a) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -54,8 +55,9 @@ class Plan {
   std::string command(std::size_t i) const;
 
   /// Makes the spec of every scenario with every arm, and every world. Throws DocumentError naming
-  /// the scenario and the arm that do not go together, and the reason.
-  void check() const;
+  /// the scenario and the arm that do not go together, and the reason. `stop` leaves
+  /// the rest unchecked.
+  void check(const std::stop_token& stop = {}) const;
 
  private:
   RunSpec spec(std::size_t scenario, std::size_t arm, std::uint64_t seed) const;

@@ -26,7 +26,7 @@ constexpr const char* kOrder = "scenarios/order.txt";  // names in the document'
 /// Throws std::runtime_error if ticks of the run are not stored. Null: it was not to be recorded.
 void check_record(const RunChannel* record) {
   if (record == nullptr) return;
-  const std::string problem = record->failed() ? record->problem() : record->loss();
+  const std::string problem = record->incomplete();
   if (problem.empty()) return;
   throw std::runtime_error("The record of this run is incomplete. " + problem);
 }

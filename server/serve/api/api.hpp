@@ -30,6 +30,7 @@ struct ApiContext {
   RunQueue& queue;
   Recorder& recorder;
   Workers& workers;
+  Workers& checker;  // one thread, for what would keep the others busy for a minute
   std::function<void(std::function<void()>)> post_to_io{};  // from any thread
   RunSpec first{};                                          // default run of a new session
   std::shared_ptr<const nlohmann::json> first_document{};   // its world, if not the library's

@@ -53,9 +53,12 @@ net::Response list_experiments(ApiContext& context, const net::Request&, Worker&
   return json_response(200, {{"items", std::move(items)}, {"next", nullptr}});
 }
 
-net::Response post_experiment(ApiContext& context, const net::Request& request, Worker&) {
-  const Experiments::Posted posted = context.experiments.post(
-      body_json(request), std::string(request.header("Idempotency-Key")), request.person);
+net::Response post_experiment(ApiContext& context, const net::Request& request, Worker& worker) {
+  const Experiments::Posted posted =
+      context.experiments.post(body_json(request),
+                               std::string(request.header("Idempotency-Key")),
+                               request.person,
+                               worker.stop());
   const ExperimentInfo info = posted.experiment->info();
   net::Response response =
       json_response(info.state == ExperimentState::Finished ? 200 : 202, to_json(info));
@@ -117,7 +120,7 @@ net::Response delete_experiment(ApiContext& context, const net::Request& request
 /// results.json, of its scenarios only the asked one: a page shows one at a time.
 net::Response get_results(ApiContext& context, const net::Request& request, Worker&) {
   const std::shared_ptr<Experiment> experiment = experiment_of(context, request);
-  const std::shared_ptr<const json> results = experiment->write_report();
+  const std::shared_ptr<const json> results = experiment->write_report().results;
   context.experiments.looked_at(experiment);
   json body = json::object();
   for (const auto& [key, value] : results->items()) {
@@ -161,7 +164,8 @@ net::Response file_of(ApiContext& context, const net::Request& request, const ch
   const fs::path file = experiment->folder() / folder / name;
   const bool one_of_ours = name.find('/') == std::string::npos && is_result(name);
   if (one_of_ours) {
-    experiment->write_report();
+    const std::string problem = experiment->write_report().problem;
+    if (!problem.empty()) throw net::HttpError(503, problem);
     context.experiments.looked_at(experiment);
   }
   const auto in = std::make_shared<std::ifstream>();
@@ -210,7 +214,7 @@ net::Response get_events(ApiContext& context, const net::Request& request, Worke
 
 void add_experiment_routes(Routes& routes) {
   routes.make("GET", "/experiments", list_experiments);
-  routes.make("POST", "/experiments", post_experiment);
+  routes.make_in_turn("POST", "/experiments", post_experiment);
   routes.make("POST", "/experiments/estimate", post_estimate);
   routes.make("GET", "/experiments/{id}", get_experiment);
   routes.make("DELETE", "/experiments/{id}", delete_experiment);

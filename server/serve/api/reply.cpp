@@ -24,6 +24,8 @@ net::Response problem_of_library(const LibraryError& e) {
       return net::problem(409, "Built in", e.what());
     case LibraryError::Kind::BadName:
       return net::problem(422, "Bad name", e.what());
+    case LibraryError::Kind::NoRoom:
+      return net::problem(503, e.what());
     case LibraryError::Kind::Unreadable:
       break;
   }

@@ -51,7 +51,7 @@ Sender sender(const net::Request& from) {
           std::string(from.header(kLeaseHeader))};
 }
 
-/// Throws the 409 that says who drives.
+/// Throws the 409 that says why not.
 void heed(const std::optional<std::string>& refusal) {
   if (refusal) throw net::HttpError(409, *refusal);
 }
@@ -69,7 +69,7 @@ void submit_and_reply(Session& session,
       session,
       std::move(request.request),
       [respond, status](const json& body) { respond(json_response(status, body)); },
-      [respond](const std::string& refusal) { respond(net::problem(409, "Refused", refusal)); },
+      [respond](const std::string& refusal) { respond(net::problem(409, refusal)); },
       from.visitor().label());
   if (!taken) busy(respond);
 }
@@ -117,8 +117,8 @@ void patch_parameters(Session& session, const net::Request& from, const net::Res
   parameters_from_json(body, "", now);
   const std::vector<algo::SetParameter> order = in_safe_order(body, now);
   if (order.empty()) {
-    respond(body.empty() ? json_response(200, to_json(now))
-                         : net::problem(409, "Refused", "Change these one at a time."));
+    if (!body.empty()) throw net::HttpError(409, "Change these one at a time.");
+    respond(json_response(200, to_json(now)));
     return;
   }
   const auto left = std::make_shared<std::size_t>(order.size());
@@ -129,7 +129,7 @@ void patch_parameters(Session& session, const net::Request& from, const net::Res
           if (refusal) *refused = *refusal;
           if (--*left > 0) return;
           respond(refused->empty() ? json_response(200, to_json(session.state().asked.parameters))
-                                   : net::problem(409, "Refused", *refused));
+                                   : net::problem(409, *refused));
         });
     if (!given) {
       busy(respond);
@@ -150,10 +150,7 @@ void control(ApiContext& context,
   Session& session = open.session();
   if (action != "stop") heed(admit_deed(session, sender(from)));
   if (action == "pause" || action == "step" || action == "speed") {
-    if (const auto refusal = session.pace_refusal()) {
-      respond(net::problem(409, "Refused", *refusal));
-      return;
-    }
+    heed(session.pace_refusal());
   }
   if (action == "load") {
     json load = body;
@@ -177,10 +174,7 @@ void control(ApiContext& context,
     return;
   } else if (action == "arm" || action == "disarm") {
     in.only({"action"});
-    if (const auto refusal = session.arm(action == "arm", who)) {
-      respond(net::problem(409, "Refused", *refusal));
-      return;
-    }
+    heed(session.arm(action == "arm", who));
   } else if (action == "play" || action == "pause") {
     in.only({"action"});
     pause(session, action == "pause", who);
@@ -207,8 +201,7 @@ void save_scenario(ApiContext& context,
   in.only({"name", "title"});
   const std::string name = in.text("name", 64);
   if (!session.state().spec.scenario.log.empty()) {
-    respond(net::problem(409, "Refused", "A recorded log is playing: there is no world to save."));
-    return;
+    throw net::HttpError(409, "A recorded log is playing: there is no world to save.");
   }
   sim::Scenario scenario = session.as_scenario();
   scenario.name = name;
@@ -257,11 +250,9 @@ void publish(Session& session, const json& body, const net::Responder& respond) 
   if (body.empty()) in.fail("inclinometer", "is missing, and so is 'line'");
   algo::Publishing* const robot = session.publishing();
   if (robot == nullptr) {
-    respond(net::problem(409,
-                         "Refused",
+    throw net::HttpError(409,
                          "This robot takes no published readings: only one of real devices does, "
-                         "if its file says so."));
-    return;
+                         "if its file says so.");
   }
   std::optional<std::string> refusal;
   if (in.has("inclinometer")) {
@@ -275,14 +266,15 @@ void publish(Session& session, const json& body, const net::Responder& respond) 
     line.only({"pixels", "age"});
     refusal = robot->publish_line(pixels_from_json(line), line.number_or("age", 0));
   }
-  respond(refusal ? net::problem(409, "Refused", *refusal) : json_response(200, {{"ok", true}}));
+  heed(refusal);
+  respond(json_response(200, {{"ok", true}}));
 }
 
 using SessionHandler =
     std::function<void(OpenSession&, const net::Request&, const net::Responder&)>;
 
-/// A route whose body is a goal, for a request of `type`.
-SessionHandler goal_route(const char* type, std::vector<std::string_view> fields) {
+/// A route whose body is a request of `type`, with these fields.
+SessionHandler request_route(const char* type, std::vector<std::string_view> fields) {
   return [type, fields = std::move(fields)](
              OpenSession& open, const net::Request& request, const net::Responder& respond) {
     json body = body_json(request);
@@ -413,12 +405,12 @@ void add_session_routes(net::Router& router, ApiContext& context) {
                          request,
                          respond);
       });
-  routes.add("PUT", "/goal", goal_route("set_goal", {"x", "y", "heading"}));
-  routes.add("POST", "/goal", goal_route("add_goal", {"x", "y", "heading"}));
+  routes.add("PUT", "/goal", request_route("set_goal", {"x", "y", "heading"}));
+  routes.add("POST", "/goal", request_route("add_goal", {"x", "y", "heading"}));
   routes.add("PUT",
              "/hand_goal",
-             goal_route("set_hand_goal", {kHandGoalFields.begin() + 1, kHandGoalFields.end()}));
-  routes.add("PUT", "/pose", goal_route("set_initial_pose", {"x", "y", "heading"}));
+             request_route("set_hand_goal", {kHandGoalFields.begin() + 1, kHandGoalFields.end()}));
+  routes.add("PUT", "/pose", request_route("set_initial_pose", {"x", "y", "heading"}));
   routes.add(
       "DELETE", "/pose", [](OpenSession& open, const Request& request, const Responder& respond) {
         submit_and_reply(open.session(), {algo::SetInitialPose{}, {}}, request, respond);
@@ -432,7 +424,7 @@ void add_session_routes(net::Router& router, ApiContext& context) {
         respond(net::json_response(200, map->document));
       },
       Sign::None);
-  routes.add("PUT", "/joints", goal_route("set_joints", {"position"}));
+  routes.add("PUT", "/joints", request_route("set_joints", {"position"}));
   routes.add(
       "DELETE", "/goal", [](OpenSession& open, const Request& request, const Responder& respond) {
         submit_and_reply(open.session(), {algo::ClearGoal{}, {}}, request, respond);
@@ -451,21 +443,12 @@ void add_session_routes(net::Router& router, ApiContext& context) {
         submit_and_reply(
             open.session(), {edit_of(std::move(body), obstacle_id(request)), {}}, request, respond);
       });
-  routes.add(
-      "PUT", "/goals", [](OpenSession& open, const Request& request, const Responder& respond) {
-        json body = body_json(request);
-        JsonReader(body, "").only({"goals", "next", "loop"});
-        body["type"] = "set_goals";
-        submit_and_reply(open.session(), {request_from_json(body), {}}, request, respond);
-      });
+  routes.add("PUT", "/goals", request_route("set_goals", {"goals", "next", "loop"}));
   routes.add(
       "PUT", "/start", [](OpenSession& open, const Request& request, const Responder& respond) {
         heed(admit_deed(open.session(), sender(request)));
-        if (const auto refusal = set_start(open.session(), body_json(request))) {
-          respond(net::problem(409, "Refused", *refusal));
-        } else {
-          respond(json_response(200, {{"ok", true}}));
-        }
+        heed(set_start(open.session(), body_json(request)));
+        respond(json_response(200, {{"ok", true}}));
       });
   routes.add("DELETE",
              "/obstacles/{id}",

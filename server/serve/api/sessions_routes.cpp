@@ -40,7 +40,7 @@ json list(ApiContext& context) {
 
 void open_session(ApiContext& context, const net::Request& request, const net::Responder& respond) {
   // The fields of `/load`; without a scenario, the run that the server began with.
-  LoadRequest asked = load_request(body_json(request));
+  LoadRequest asked = load_request(request.body.empty() ? json::object() : body_json(request));
   if (!asked.overrides.seed) asked.overrides.seed = context.first.seed;
   if (asked.same_world) asked.document = context.first_document;
   context.sessions.open(

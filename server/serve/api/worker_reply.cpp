@@ -20,34 +20,43 @@ net::Responder through_io(ApiContext& context, const net::Responder& respond) {
   });
 }
 
+Routes::Answer answer_of(Routes::Make make) {
+  return [make = std::move(make)](ApiContext& context,
+                                  const net::Request& request,
+                                  Worker& worker,
+                                  const net::Responder& respond) {
+    respond(context.room.admit(make(context, request, worker)));
+  };
+}
+
 }  // namespace
 
 void Routes::work(const char* method, const std::string& path, Answer answer) {
-  router_.add(
-      method,
-      "/api/v1" + path,
-      [&context = context_, answer = std::move(answer)](const net::Request& request,
-                                                        const net::Responder& respond) {
-        context.workers.post(
-            [&context, answer, request, through = through_io(context, respond)](Worker& worker) {
-              try {
-                answer(context, request, worker, through);
-              } catch (...) {
-                through(problem_of_current_exception());
-              }
-            });
-      });
+  work(method, path, std::move(answer), context_.workers);
+}
+
+void Routes::work(const char* method, const std::string& path, Answer answer, Workers& workers) {
+  router_.add(method,
+              "/api/v1" + path,
+              [&context = context_, &workers, answer = std::move(answer)](
+                  const net::Request& request, const net::Responder& respond) {
+                workers.post([&context, answer, request, through = through_io(context, respond)](
+                                 Worker& worker) {
+                  try {
+                    answer(context, request, worker, through);
+                  } catch (...) {
+                    through(problem_of_current_exception());
+                  }
+                });
+              });
 }
 
 void Routes::make(const char* method, const std::string& path, Make make) {
-  work(method,
-       path,
-       [make = std::move(make)](ApiContext& context,
-                                const net::Request& request,
-                                Worker& worker,
-                                const net::Responder& respond) {
-         respond(context.room.admit(make(context, request, worker)));
-       });
+  work(method, path, answer_of(std::move(make)));
+}
+
+void Routes::make_in_turn(const char* method, const std::string& path, Make make) {
+  work(method, path, answer_of(std::move(make)), context_.checker);
 }
 
 void Routes::answer(

@@ -29,8 +29,11 @@ class Routes {
   /// `answer` runs on a worker, where it may read, wait and build. It answers now or later, from
   /// any thread. Its exceptions become problem documents.
   void work(const char* method, const std::string& path, Answer answer);
+  void work(const char* method, const std::string& path, Answer answer, Workers& workers);
   /// As work(), for a function that returns its answer.
   void make(const char* method, const std::string& path, Make make);
+  /// On a thread of its own, in turn: for a check that may take a minute.
+  void make_in_turn(const char* method, const std::string& path, Make make);
   /// These run on the io thread. The first answers now or later, the second at once.
   void answer(const char* method,
               const std::string& path,

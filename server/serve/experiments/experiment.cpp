@@ -83,6 +83,7 @@ Experiment::Experiment(fs::path folder, sweep::Plan plan, ExperimentInfo info)
   rows_ = log_->found();
   count();
   enter(ExperimentState::Running);
+  write_state();  // throws where that did not
 }
 
 Experiment::Experiment(fs::path folder,
@@ -162,7 +163,8 @@ void Experiment::count() {
   }
 }
 
-/// Holds mutex_.
+/// Also if the state cannot be written: a run must be stopped on a full disk too. After a restart
+/// it is then in its state before. Holds mutex_.
 void Experiment::enter(ExperimentState state) {
   info_.state = state;
   if (state == ExperimentState::Running) {
@@ -170,7 +172,11 @@ void Experiment::enter(ExperimentState state) {
     began_ = Clock::now();
     done_before_ = info_.done;
   }
-  write_state();
+  try {
+    write_state();
+  } catch (const std::exception& e) {
+    info_.problem = without_folders(e.what());
+  }
 }
 
 void Experiment::write_state() const {
@@ -219,7 +225,7 @@ std::optional<Experiment::Work> Experiment::next() {
     log_->begin(run);
   } catch (const std::exception& e) {  // a full disk
     info_.state = ExperimentState::Paused;
-    info_.problem = e.what();
+    info_.problem = without_folders(e.what());
     close_log_if_idle();
     return std::nullopt;
   }
@@ -249,7 +255,7 @@ void Experiment::take(std::size_t run, const experiment::Row& row) {
     // A full disk: nothing is lost that a later start does not make again.
     if (!rows_.has(run)) missing_.push_back(run);
     info_.state = ExperimentState::Paused;
-    info_.problem = e.what();
+    info_.problem = without_folders(e.what());
   }
   close_log_if_idle();
 }
@@ -265,6 +271,11 @@ void Experiment::put_back(std::size_t run) {
 bool Experiment::at_work() const {
   const std::lock_guard lock(mutex_);
   return at_work_ > 0;
+}
+
+std::size_t Experiment::worlds() const {
+  const std::lock_guard lock(mutex_);
+  return plan_ ? plan_->document().scenarios.size() : 0;
 }
 
 /// Others may then open the file. Holds mutex_.
@@ -283,24 +294,28 @@ void Experiment::look(
   see(*plan_, rows_);
 }
 
-std::shared_ptr<const json> Experiment::write_report() {
+Experiment::Report Experiment::write_report() {
   const std::lock_guard reporting(reporting_);
   std::unique_lock now = loaded();
   const bool young = info_.state == ExperimentState::Running && reported_.has_value() &&
                      Clock::now() - reported_at_ < kReportAge;
-  if (results_ && (reported_ == changes_ || young)) return results_;
+  if (results_ && (reported_ == changes_ || young)) return {results_};
   const std::shared_ptr<const sweep::Plan> plan = plan_;
   const std::uint64_t changes = changes_;
   const sweep::Rows rows = rows_;
   now.unlock();
   const sweep::Results results = results_of(*plan, rows);
-  sweep::write_report(*plan, rows, results, folder_);
   auto document = std::make_shared<const json>(results_json(*plan, results));
+  try {
+    sweep::write_report(*plan, rows, results, folder_);
+  } catch (const std::exception& e) {
+    return {document, without_folders(e.what())};
+  }
   const std::lock_guard lock(mutex_);
   reported_ = changes;
   reported_at_ = Clock::now();
   results_ = document;
-  return document;
+  return {document};
 }
 
 void Experiment::unload() {

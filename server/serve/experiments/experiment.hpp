@@ -83,14 +83,19 @@ class Experiment {
   void take(std::size_t run, const experiment::Row& row);
   void put_back(std::size_t run);
   bool at_work() const;
+  /// Of its plan, while that is in memory.
+  std::size_t worlds() const;
 
   /// The plan and the rows so far, read from the folder if need be. Throws as resume().
   std::shared_ptr<const sweep::Plan> plan();
   /// Shows the rows so far, which do not change meanwhile: `see` must be quick.
   void look(const std::function<void(const sweep::Plan& plan, const sweep::Rows& rows)>& see);
-  /// Writes the report of the runs so far, unless it is new enough, and returns results.json.
-  /// Throws std::exception.
-  std::shared_ptr<const nlohmann::json> write_report();
+  struct Report {
+    std::shared_ptr<const nlohmann::json> results{};  // results.json
+    std::string problem{};  // why the files cannot be written, such as on a full disk; or empty
+  };
+  /// Writes the report of the runs so far, unless it is new enough. Throws as resume().
+  Report write_report();
   /// Gives the memory of plan and rows back while it does not run.
   void unload();
 

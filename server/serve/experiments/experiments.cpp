@@ -11,7 +11,10 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "server/experiment/sweep/scenario_entries.hpp"
 #include "server/record/run_json.hpp"
+#include "server/run/json_reader.hpp"
+#include "server/run/paths.hpp"
 #include "server/serve/net/http.hpp"
 #include "server/serve/workers.hpp"
 
@@ -21,6 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::seconds kRemoval{5};  // a run is stopped between two ticks
+constexpr double kMostWorlds = 10'000;       // of a document: each is a file
 constexpr std::size_t kMostLoaded = 3;  // experiments that do not run, with plan and rows in memory
 
 unsigned workers_of(unsigned wanted) {
@@ -69,14 +73,25 @@ void Experiments::read_folder() {
   }
 }
 
-/// Holds mutex_.
-void Experiments::check_turns() const {
-  const auto running = std::ranges::count_if(all_, [](const auto& entry) {
-    return entry.second->info().state == ExperimentState::Running;
-  });
-  if (static_cast<std::size_t>(running) >= rules_.most_running) {
+/// Whether another one may run, of so many worlds. Holds mutex_.
+void Experiments::check_turns(std::size_t worlds) const {
+  std::size_t running = 0;
+  for (const auto& [id, each] : all_) {
+    if (each->info().state != ExperimentState::Running) continue;
+    ++running;
+    worlds += each->worlds();
+  }
+  if (running >= rules_.most_running) {
     throw net::HttpError(
         503, fmt::format("{} experiments are running, as many as may. Try again later.", running));
+  }
+  if (worlds > rules_.most_worlds) {
+    throw net::HttpError(
+        503,
+        fmt::format("With this one the running experiments would have {} worlds; at most {} are "
+                    "allowed. Try again later.",
+                    worlds,
+                    rules_.most_worlds));
   }
 }
 
@@ -113,11 +128,39 @@ std::shared_ptr<Experiment> Experiments::with_key(const std::string& key) const 
   return it == all_.end() ? nullptr : it->second;
 }
 
+/// Leaves no folder without an experiment. Holds mutex_.
+std::shared_ptr<Experiment> Experiments::make(sweep::Plan plan, ExperimentInfo info) const {
+  const fs::path folder = rules_.folder / info.id;
+  std::error_code error;
+  const bool was_there = fs::exists(folder, error);
+  try {
+    return std::make_shared<Experiment>(folder, std::move(plan), std::move(info));
+  } catch (const std::exception& e) {
+    if (!was_there) fs::remove_all(folder, error);
+    throw net::HttpError(503, without_folders(e.what()));
+  }
+}
+
+/// Refuses more worlds than it may have before it makes any.
+sweep::Document Experiments::read(const nlohmann::json& document) const {
+  const JsonReader in(document, "");
+  const double worlds = sweep::count_scenarios(in, sweep::Files::Refused);
+  if (worlds > kMostWorlds) {
+    in.fail("scenarios",
+            fmt::format("are {:.0f}; a server takes at most {:.0f}, `tautline sweep` takes more",
+                        worlds,
+                        kMostWorlds));
+  }
+  return sweep::document_from_json(document, library_, rules_.controllers);
+}
+
 Experiments::Posted Experiments::post(const nlohmann::json& document,
                                       const std::string& key,
-                                      const std::string& by) {
-  sweep::Plan plan(sweep::document_from_json(document, library_, rules_.controllers));
-  plan.check();
+                                      const std::string& by,
+                                      const std::stop_token& stop) {
+  sweep::Plan plan(read(document));
+  plan.check(stop);
+  if (stop.stop_requested()) throw net::HttpError(503, "The server is stopping.");
   ExperimentInfo info{.id = sweep::hash_of(sweep::identity_of(plan.document())),
                       .name = plan.document().name,
                       .by = by,
@@ -137,10 +180,9 @@ Experiments::Posted Experiments::post(const nlohmann::json& document,
     if (it != all_.end()) {
       posted.experiment = it->second;
     } else {
-      check_turns();
+      check_turns(plan.document().scenarios.size());
       make_room(bytes);
-      const fs::path folder = rules_.folder / info.id;
-      posted.experiment = std::make_shared<Experiment>(folder, std::move(plan), std::move(info));
+      posted.experiment = make(std::move(plan), std::move(info));
       posted.created = true;
       all_[posted.experiment->info().id] = posted.experiment;
     }
@@ -156,8 +198,8 @@ std::pair<sweep::Plan, sweep::Estimate> Experiments::estimate(const nlohmann::js
   if (!alone) {
     throw net::HttpError(429, "Another estimate is being made. Try again in some seconds.");
   }
-  sweep::Plan plan(sweep::document_from_json(document, library_, rules_.controllers));
-  plan.check();
+  sweep::Plan plan(read(document));
+  plan.check(stop);
   const sweep::Estimate cost = sweep::estimate(plan, {.stop = stop});
   return {std::move(plan), cost};
 }
@@ -184,9 +226,10 @@ std::shared_ptr<Experiment> Experiments::find(const std::string& id) const {
 void Experiments::resume(const std::string& id) {
   const std::shared_ptr<Experiment> experiment = find(id);
   if (experiment->info().state == ExperimentState::Running) return;
+  const std::size_t worlds = experiment->plan()->document().scenarios.size();
   {
     const std::lock_guard lock(mutex_);
-    check_turns();
+    check_turns(worlds);
   }
   experiment->resume();
   ring();

@@ -28,7 +28,8 @@ struct ExperimentRules {
   std::uint64_t keep_bytes = 0;  // room for the files of all, beside the record; 0: the whole disk
   bool evict_oldest = false;     // ended ones may be deleted, each as a whole, to make room
   std::size_t most_running = 16;
-  unsigned workers = 0;  // 0: one per processor but one, which the server keeps
+  std::size_t most_worlds = 40'000;  // of all that run: some 4 kB of memory each
+  unsigned workers = 0;              // 0: one per processor but one, which the server keeps
   /// As in RunSpec.
   std::shared_ptr<const algo::ControllerCatalogue> controllers{};
 };
@@ -50,8 +51,12 @@ class Experiments {
   };
   /// Checks the whole document and starts it. The same document is the same experiment. Throws
   /// DocumentError, or net::HttpError: 409 if `key` has another document, 503 if too many
-  /// run or there is no room for another.
-  Posted post(const nlohmann::json& document, const std::string& key, const std::string& by);
+  /// run or there is no room for another, or at `stop`, as the check may take a
+  /// minute.
+  Posted post(const nlohmann::json& document,
+              const std::string& key,
+              const std::string& by,
+              const std::stop_token& stop = {});
 
   /// What the experiment of a document would cost, and its plan. Checks everything as post() does.
   /// One at a time: it takes some seconds of a core. Throws DocumentError, or net::HttpError 429.
@@ -75,7 +80,9 @@ class Experiments {
 
  private:
   void read_folder();
-  void check_turns() const;
+  std::shared_ptr<Experiment> make(sweep::Plan plan, ExperimentInfo info) const;
+  sweep::Document read(const nlohmann::json& document) const;
+  void check_turns(std::size_t worlds) const;
   void make_room(std::uint64_t bytes);
   std::shared_ptr<Experiment> with_key(const std::string& key) const;
   struct Turn {

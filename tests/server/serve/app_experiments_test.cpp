@@ -1,4 +1,8 @@
 // tests/server/serve/app_experiments_test.cpp: documents of experiments that REST refuses.
+#include <atomic>
+#include <chrono>
+#include <string>
+#include <thread>
 #include <tuple>
 #include <vector>
 
@@ -90,6 +94,25 @@ TEST_F(AppExperiments, FiftyMalformedExperimentsAreRefusedByField) {
   expect_problem(ask("POST", "/experiments", large.dump()), 422, "20000000");
   expect_problem(ask("POST", "/experiments", "{"), 400, "");
   EXPECT_TRUE(get("/experiments")["items"].empty());
+}
+
+TEST_F(AppExperiments, ChecksOfLargeOnesKeepNoOtherAnswerWaiting) {
+  std::vector<std::thread> clients;
+  std::atomic<int> checking{4};
+  for (int i = 0; i < 4; ++i) {
+    clients.emplace_back([&, i] {
+      json large = json::parse(R"({"controllers":["go_to_goal"],"physics":"kinematic"})");
+      large["name"] = "large-" + std::to_string(i);
+      large["scenarios"] = {{{"random_layouts", {{"count", 3000}}}}};
+      EXPECT_EQ(post("/experiments", large), 202);
+      --checking;
+    });
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // until all are there
+  int answers = 0;                                             // while all the checks go on
+  for (; checking == 4; ++answers) get("/runs?limit=1");
+  EXPECT_GT(answers, 5);
+  for (std::thread& client : clients) client.join();
 }
 
 }  // namespace

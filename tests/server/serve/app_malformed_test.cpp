@@ -162,6 +162,9 @@ TEST_F(AppTest, MalformedFramesAreAnsweredAndTheOthersGoOn) {
       {2, "\x02" + u32(1) + u32(5) + u32(0xFFFFFFFF)},
       {2, call("/load", R"({"scenario":"nowhere"})")},
       {2, call("/speed", R"({"speed":"fast"})")},
+      {2, call("/step", R"({"tick":10})")},
+      {2, call("/reset", R"({"seed":10})")},
+      {2, call("/clock", "[]")},
       {2, call("/request", "not json")},
   };
   for (const auto& [opcode, payload] : frames) {

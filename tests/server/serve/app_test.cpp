@@ -2,6 +2,8 @@
 // runs.
 #include "server/serve/app.hpp"
 
+#include <filesystem>
+#include <fstream>
 #include <set>
 #include <span>
 #include <sstream>
@@ -11,6 +13,7 @@
 #include <vector>
 
 #include "tests/server/serve/app_fixture.hpp"
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -97,7 +100,8 @@ TEST_F(AppTest, TheDescriptionListsExactlyTheRoutes) {
                      .experiments = experiments,
                      .queue = queue,
                      .recorder = recorder,
-                     .workers = workers};
+                     .workers = workers,
+                     .checker = workers};
   net::Server server({.port = 0});  // adds the login itself
   add_api(server.router(), context);
   std::multiset<std::string> routes;
@@ -154,6 +158,18 @@ TEST_F(AppTest, EveryReadAnswersWithTheKeysItsSchemaRequires) {
     expect_required(api, content["application/json"]["schema"], sample, target);
   }
   EXPECT_GE(read, 18);
+}
+
+TEST_F(AppTest, AThousandScenariosAreKeptAndOnesThatCannotBeWrittenAreNot) {
+  const std::filesystem::path own = folder_ / "scenarios";
+  std::filesystem::create_directories(own / "blocked.json.new");
+  const std::string world = R"({"goal":{"x":1,"y":0}})";
+  expect_problem(ask("PUT", "/scenarios/blocked", world), 503, "Cannot write blocked.json");
+  for (int i = 0; i < 1000; ++i) std::ofstream(own / fmt::format("mine-{}.json", i)) << world;
+  expect_problem(ask("PUT", "/scenarios/another", world), 503, "as many as may. Delete one.");
+  EXPECT_EQ(ask("PUT", "/scenarios/mine-7", world).status, 200);
+  EXPECT_EQ(ask("DELETE", "/scenarios/mine-8").status, 204);
+  EXPECT_EQ(ask("PUT", "/scenarios/another", world).status, 200);
 }
 
 TEST_F(AppTest, TwelveMalformedScenariosAreRefusedByFieldAndNotKept) {

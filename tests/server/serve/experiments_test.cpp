@@ -145,7 +145,7 @@ TEST_F(ExperimentsTest, ItsCopiesOutliveTheRobotsAndScenariosOfTheUser) {
     write_text(user / "mine.json", R"({"name":"mine","goal":{"x":2,"y":0}})");
     if (gone) fs::remove_all(user);
     Experiments experiments(rules(), own);
-    EXPECT_EQ(experiments.find(id)->write_report()->at("runs"), 8) << gone;
+    EXPECT_EQ(experiments.find(id)->write_report().results->at("runs"), 8) << gone;
     experiments.resume(id);
     EXPECT_EQ(experiments.find(id)->info().state, ExperimentState::Finished) << gone;
   }
@@ -237,7 +237,7 @@ TEST_F(ExperimentsTest, IsReadWhileItsMemoryIsGivenBack) {
     EXPECT_EQ(experiment.plan()->size(), 4U);
     experiment.look(
         [](const sweep::Plan&, const sweep::Rows& rows) { EXPECT_EQ(rows.size(), 4U); });
-    EXPECT_EQ(experiment.write_report()->at("runs"), 4);
+    EXPECT_EQ(experiment.write_report().results->at("runs"), 4);
   }
 }
 
@@ -300,6 +300,82 @@ TEST_F(ExperimentsTest, ACancelledOneStopsItsRunWhichIsMadeAgainWhenResumed) {
   experiments.resume(id);
   EXPECT_TRUE(comes([&] { return forever->at_work(); }));
   EXPECT_EQ(forever->info().state, ExperimentState::Running);
+}
+
+TEST_F(ExperimentsTest, OnesThatCannotWriteStillEndAreReadAndGo) {
+  Experiments experiments({.folder = folder(), .workers = 1}, library);
+  const std::shared_ptr<Experiment> forever =
+      experiments.post(everlasting("forever"), "", "").experiment;
+  const std::string id = forever->info().id;
+  ASSERT_TRUE(comes([&] { return forever->at_work(); }));
+  // As on a full disk, for a user whom no permission stops.
+  fs::create_directory(forever->folder() / "state.json.new");
+  fs::create_directory(forever->folder() / "runs.csv");
+  const Experiment::Report report = forever->write_report();
+  EXPECT_EQ(report.results->at("runs"), 1);
+  EXPECT_EQ(report.problem, "runs.csv: cannot be written");
+  experiments.cancel(id);
+  EXPECT_EQ(forever->info().state, ExperimentState::Cancelled);
+  EXPECT_EQ(forever->info().problem, "state.json.new: cannot be written");
+  ASSERT_TRUE(comes([&] { return !forever->at_work(); }));
+  experiments.resume(id);
+  ASSERT_TRUE(comes([&] { return forever->at_work(); }));
+  experiments.remove(id);
+  EXPECT_TRUE(comes([&] { return !fs::exists(forever->folder()); }));
+}
+
+TEST_F(ExperimentsTest, ANewOneThatCannotBeWrittenIsRefused) {
+  write_text(folder().parent_path() / "file", "no folder");
+  Experiments experiments({.folder = folder().parent_path() / "file", .workers = 1}, library);
+  EXPECT_THROW(experiments.post(document("new", 1), "", ""), net::HttpError);
+  EXPECT_TRUE(experiments.list().empty());
+}
+
+/// So many worlds, each with many robots, which take long to make.
+json crowded(const char* name, int worlds, int robots) {
+  json crowd = document(name, 1);
+  const json one = crowd["scenarios"][0];
+  crowd["scenarios"] = json::array();
+  for (int i = 0; i < worlds; ++i) {
+    json& world = crowd["scenarios"].emplace_back(one);
+    world["name"] = "crowd-" + std::to_string(i);
+    for (int k = 0; k < robots; ++k) {
+      world["robots"].push_back({{"start", {{"x", 2 * (k % 14)}, {"y", 3 + 2 * (k / 14)}}}});
+    }
+  }
+  crowd["physics"] = "bullet";
+  return crowd;
+}
+
+TEST_F(ExperimentsTest, TheCheckOfManyWorldsEndsWithTheServer) {
+  Experiments experiments(rules(), library);
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_THROW(experiments.post(crowded("crowd", 400, 150), "", "", stop.get_token()),
+               net::HttpError);
+  EXPECT_TRUE(experiments.list().empty());
+}
+
+TEST_F(ExperimentsTest, RunningOnesHaveALimitedNumberOfWorlds) {
+  ExperimentRules few = rules();
+  few.most_worlds = 5;
+  Experiments experiments(few, library);
+  json three = endless("three");
+  three["scenarios"] = {{{"random_layouts", {{"count", 3}}}}};
+  const std::string id = experiments.post(three, "", "").experiment->info().id;
+  json other = three;
+  other["name"] = "other";
+  EXPECT_THAT([&] { experiments.post(other, "", ""); },
+              ThrowsMessage<net::HttpError>(HasSubstr("would have 6 worlds; at most 5")));
+  experiments.pause(id);
+  experiments.post(other, "", "");
+  EXPECT_THAT([&] { experiments.resume(id); },
+              ThrowsMessage<net::HttpError>(HasSubstr("6 worlds")));
+  json many = three;
+  many["scenarios"] = {{{"random_layouts", {{"count", 9000}}}},
+                       {{"random_layouts", {{"count", 1001}}}}};
+  EXPECT_THAT([&] { experiments.post(many, "", ""); },
+              ThrowsMessage<DocumentError>(HasSubstr("scenarios: are 10001; a server takes")));
 }
 
 TEST_F(ExperimentsTest, OneEstimateIsMadeAtATimeAndEndsWithTheServer) {

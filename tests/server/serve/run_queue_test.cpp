@@ -145,6 +145,18 @@ TEST_F(RunQueueTest, ASlowlyPacedRunHoldsUpNoOther) {
   }
 }
 
+TEST_F(RunQueueTest, ASlowlyPacedBatchHoldsUpNoOtherPacedRun) {
+  Recorder recorder(path, recorder_options());
+  RunQueue queue(recorder);
+  const auto slow = start(queue, {.spec = case1(), .repeats = 20, .pace = 0.01});
+  ASSERT_TRUE(comes_to(slow[0], RunStatus::Recording));
+  const auto other = start(queue, {.spec = case1(), .repeats = 2, .pace = 100});
+  for (const db::RunId run : other) EXPECT_TRUE(comes_to(run, RunStatus::Finished));
+  RunReader reader(path);
+  EXPECT_EQ(get(reader, slow[0]).status, RunStatus::Recording);
+  EXPECT_EQ(get(reader, slow[1]).status, RunStatus::Queued);
+}
+
 TEST_F(RunQueueTest, WaitingWorldsAreLimitedInBytes) {
   Recorder recorder(path, recorder_options());
   RunQueue queue(recorder);

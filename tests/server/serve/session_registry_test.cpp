@@ -67,6 +67,7 @@ TEST_F(SessionsTest, SessionsAreLimitedAndAnEndedOneMakesRoom) {
   open();
   open();
   expect_problem(ask("POST", "/sessions", "{}"), 503, "as many as this server has room for");
+  expect_problem(ask("POST", "/sessions"), 503, "as many as this server has room for");
   EXPECT_EQ(ask("DELETE", at(first)).status, 204);
   EXPECT_FALSE(open().empty());
 }

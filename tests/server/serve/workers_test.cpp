@@ -152,6 +152,7 @@ class BusyWorkers : public ::testing::Test {
                      .queue = queue,
                      .recorder = recorder,
                      .workers = workers,
+                     .checker = workers,
                      .first = make_spec(library.load("case1"), {}),
                      .server = &running.server,
                      .log_tail = [] { return std::vector<std::string>{}; }};
