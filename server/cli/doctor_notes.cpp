@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <stdexcept>
 #include <thread>
 
 #include <fmt/format.h>
@@ -11,8 +12,9 @@
 
 namespace server::doctor {
 
-void pause() {
+void pause(const DoctorOptions& options) {
   constexpr double kLook = 0.02;  // [s]
+  if (options.interrupted()) throw std::runtime_error("Interrupted: the checks are not complete.");
   std::this_thread::sleep_for(std::chrono::duration<double>(kLook));
 }
 

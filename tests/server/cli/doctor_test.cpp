@@ -2,15 +2,19 @@
 // a line of a log.
 #include "server/cli/doctor.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
 #include <sstream>
+#include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "server/cli/carmen_line.hpp"
@@ -76,6 +80,32 @@ std::string bad_words_after(const std::string& command) {
 TEST(Doctor, ADazzledScannerIsAlwaysBad) {
   EXPECT_THAT(bad_words_after("dazzle on"), HasSubstr("It is blinded"));
   EXPECT_THAT(bad_words_after("cone 20"), HasSubstr("It is dazzled"));
+}
+
+TEST(Doctor, AnInterruptionStopsTheWheels) {
+  namespace fs = std::filesystem;
+  const fs::path folder =
+      fs::temp_directory_path() / ("tautline_doctor_move_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  emulate::EmulationOptions options;
+  options.base = emulate::BaseKind::P2os;
+  options.base_link = folder / "base";
+  emulate::Emulation emulation(options);
+  emulation.start();
+  const auto x = [&] {
+    return nlohmann::json::parse(emulation.command("truth"))["pose"][0].get<double>();
+  };
+  const drivers::RobotFile file = drivers::parse_robot(
+      "name = \"a\"\nhull = { radius = 0.3 }\n[base]\ntype = \"pioneer\"\ntrack = 0.33\nport = \"" +
+          options.base_link.string() + "\"\n",
+      "a.toml");
+  const DoctorOptions interrupted{.move = true, .interrupted = [&] { return x() > 0.01; }};
+  EXPECT_THROW(examine(file, interrupted, [](const Finding&) {}), std::runtime_error);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const double stopped = x();
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_NEAR(x(), stopped, 1e-3);
+  fs::remove_all(folder);
 }
 
 /// The findings about emulated floor sensors after `command`.
