@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "server/cli/cli.hpp"
+#include "server/cli/output_files.hpp"
 #include "server/cli/signals.hpp"
 #include "server/emulate/emulation.hpp"
 #include "server/emulate/robot_toml.hpp"
@@ -126,6 +127,8 @@ void show_robot_file(const EmulationOptions& emulation, const std::filesystem::p
 
 void emulate_devices(EmulateCommand& options) {
   EmulationOptions& emulation = options.emulation;
+  refuse_shared_files({{"--log", emulation.log}, {"--scenario", options.scenario}},
+                      {{"--record", emulation.record}});
   emulation.scenario = find_scenario(options.scenario);
   if (!emulation.scenario.log.empty()) emulation.log = emulation.scenario.log;
   emulation.scanner.rs422 = !options.rs232;

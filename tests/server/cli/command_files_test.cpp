@@ -69,6 +69,15 @@ TEST_F(CommandFilesTest, AnOutputThatWouldOverwriteAnInputIsRefused) {
   write_text(path("in.json"), "kept");
   EXPECT_THAT(refusal(add_barn_command, {"barn", path("in.json"), "--rows", path("in.json")}),
               shared);
+  for (const char* journal : {"", "-wal"}) {
+    const std::string output = in + journal;
+    EXPECT_THAT(refusal(add_export_command, {"export", "1", "--db", in, "-o", output}), shared);
+  }
+  for (const char* input : {"--log", "--scenario"}) {
+    EXPECT_THAT(refusal(add_emulate_command,
+                        {"emulate", "lms200", "--link", path("port"), input, in, "--record", in}),
+                shared);
+  }
   EXPECT_EQ(read_text(in), "kept");
   EXPECT_EQ(read_text(path("in.json")), "kept");
 }
