@@ -82,6 +82,26 @@ TEST_F(CommandFilesTest, AnOutputThatWouldOverwriteAnInputIsRefused) {
   EXPECT_EQ(read_text(path("in.json")), "kept");
 }
 
+TEST_F(CommandFilesTest, ALogMayHaveAnyName) {
+  const std::string scan = "FLASER 3 1.0 1.0 1.0 0 0 0 0 0 0 ";
+  write_text(path("lab"), scan + "1.0 lab 1.0\n" + scan + "1.1 lab 1.1\n");
+  const tests::Parsed replay = tests::parsed(add_replay_command, {"replay", path("lab")});
+  EXPECT_EQ(replay.refusal, "");
+  EXPECT_EQ(replay.status, kReached);
+  write_text(path("world.json"), "{}");
+  EXPECT_THAT(refusal(add_replay_command, {"replay", path("world.json")}),
+              HasSubstr("holds no scan"));
+}
+
+TEST_F(CommandFilesTest, ARecordingMayBeNamedAsAScenario) {
+  write_text(path("people"), "0 1 0 0\n100 1 5 5\n");
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(std::filesystem::path(path("people")).parent_path());
+  EXPECT_EQ(refusal(add_crowd_command, {"crowd", "people", "--scenario", "crowd.json"}), "");
+  std::filesystem::current_path(before);
+  EXPECT_TRUE(std::filesystem::exists(path("crowd.json")));
+}
+
 TEST_F(CommandFilesTest, AnOptionWithoutEffectIsRefused) {
   for (const char* option : {"--poses", "--map", "--out", "--markdown"}) {
     EXPECT_THAT(
