@@ -155,12 +155,12 @@ int execute(BarnCommand command) {
   refuse_nothing(worlds.size() * command.options.repeats, command.options.pool.shard, "runs");
   const barn::Result result = with_progress(
       command.options.pool, "runs", [&] { return run_worlds(worlds, command.options); });
-  if (!command.rows.empty()) write_table(rows_table(result), command.rows);
   if (command.as_json) {
     fmt::print("{}\n", result_json(result).dump(2));
   } else {
     print_table(result);
   }
+  if (!command.rows.empty()) write_table(rows_table(result), command.rows);
   return kReached;
 }
 

@@ -60,8 +60,8 @@ int execute(CrowdCommand command) {
   const crowd::CrowdStudy study = with_progress(command.pool, "crossings", [&] {
     return crowd::study_crowd(recording, robot, command.pool);
   });
-  if (!command.tracks.empty()) crowd::write_tracks(study, robot.scenario.period, command.tracks);
   fmt::print("{}\n", command.as_json ? to_json(study).dump(2) : to_text(study));
+  if (!command.tracks.empty()) crowd::write_tracks(study, robot.scenario.period, command.tracks);
   return kReached;
 }
 

@@ -40,8 +40,8 @@ int run_study(LocateCommand& command) {
     count(" round dead ends");
     study.dead_ends = study_dead_ends(command.options);
   }
-  if (!command.markdown.empty()) write_markdown(study, command.markdown);
   fmt::print("{}\n", command.as_json ? to_json(study).dump(2) : to_text(study));
+  if (!command.markdown.empty()) write_markdown(study, command.markdown);
   return kReached;
 }
 
@@ -54,8 +54,8 @@ int execute(LocateCommand& command) {
   const mapping::Recording log = mapping::read_recording(command.log);
   const mapping::LocatedLog found =
       mapping::locate_log(log, seen_walls(read_map(command.map)), mapping::start_of(command.start));
-  if (!command.poses.empty()) write_poses(log, found, command.poses);
   fmt::print("{}\n", command.as_json ? to_json(found).dump(2) : to_text(found));
+  if (!command.poses.empty()) write_poses(log, found, command.poses);
   return found.located > 0 ? kReached : kNotReached;
 }
 

@@ -95,7 +95,6 @@ int execute_operator(const SoakCommand& command) {
   refuse_nothing(options.worlds * options.robots.size(), options.pool.shard, "drives");
   const soak::OperatorStudy study =
       with_progress(options.pool, "worlds", [&] { return run_operator(options); });
-  if (!command.rows.empty()) write_table(operator_rows(study), command.rows);
   for (const soak::DrivenWorld& world : study.worlds) {
     for (std::size_t hand = 0; hand < soak::kHands.size(); ++hand) {
       if (soak::kHands.at(hand) == soak::Hand::Raw) continue;
@@ -110,6 +109,7 @@ int execute_operator(const SoakCommand& command) {
   }
   fmt::print("{}", to_text(operator_table(study)));
   if (!study.places.empty()) fmt::print("\n{}", to_text(places_table(study)));
+  if (!command.rows.empty()) write_table(operator_rows(study), command.rows);
   return soak::counted_contacts(study) > 0 ? kNotHeld : kReached;
 }
 
@@ -126,12 +126,12 @@ int execute_slopes(const SoakCommand& command) {
   refuse_nothing(options.worlds, options.pool.shard, "worlds");
   const std::vector<soak::SlopeRow> rows =
       with_progress(options.pool, "worlds", [&] { return run_slopes(options); });
-  if (!command.rows.empty()) write_table(slope_rows(rows), command.rows);
   for (const soak::SlopeRow& row : rows) {
     if (!row.counts() || !row.guarded.overturned) continue;
     fmt::print("world {}: turned over after {:.1f} s\n", row.seed, row.guarded.seconds);
   }
   fmt::print("{}", to_text(slopes_table(rows)));
+  if (!command.rows.empty()) write_table(slope_rows(rows), command.rows);
   return soak::turned_over(rows) > 0 ? kNotHeld : kReached;
 }
 
@@ -149,7 +149,6 @@ int execute_courses(const SoakCommand& command) {
   refuse_nothing(options.worlds, options.pool.shard, "courses");
   const std::vector<soak::CourseRow> rows =
       with_progress(options.pool, "courses", [&] { return run_courses(options); });
-  if (!command.rows.empty()) write_table(course_rows(rows), command.rows);
   bool fault = false;
   for (const soak::CourseRow& row : rows) {
     if (!soak::is_fault(row)) continue;
@@ -157,6 +156,7 @@ int execute_courses(const SoakCommand& command) {
     fmt::print("course {}: {}{}\n", row.seed, row.end.fell ? "fell, " : "", row.end.words);
   }
   fmt::print("{}", to_text(courses_table(rows)));
+  if (!command.rows.empty()) write_table(course_rows(rows), command.rows);
   return fault ? kNotHeld : kReached;
 }
 
@@ -174,9 +174,9 @@ int execute(SoakCommand command) {
   refuse_nothing(command.options.worlds, command.options.pool.shard, "worlds");
   const std::vector<soak::World> worlds =
       with_progress(command.options.pool, "worlds", [&] { return run_worlds(command.options); });
-  if (!command.rows.empty()) write_table(rows_table(worlds), command.rows);
   print_worlds(worlds, command.list);
   print_table(worlds);
+  if (!command.rows.empty()) write_table(rows_table(worlds), command.rows);
   const bool fault = std::ranges::any_of(
       worlds, [](const soak::World& world) { return soak::is_fault(world.row); });
   return fault ? kNotHeld : kReached;

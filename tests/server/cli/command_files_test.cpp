@@ -102,6 +102,22 @@ TEST_F(CommandFilesTest, ARecordingMayBeNamedAsAScenario) {
   EXPECT_TRUE(std::filesystem::exists(path("crowd.json")));
 }
 
+TEST_F(CommandFilesTest, AStudyThatCannotWriteItsFilesIsPrintedAllTheSame) {
+  std::filesystem::create_symlink("/dev/full", path("rows.csv"));
+  CLI::App app;
+  int status = -1;
+  add_soak_command(Command(app), status);
+  testing::internal::CaptureStdout();
+  std::string why;
+  try {
+    app.parse("soak --worlds 1 --slopes --seconds 1 --rows " + path("rows.csv"));
+  } catch (const std::runtime_error& e) {
+    why = e.what();
+  }
+  EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("overturned"));
+  EXPECT_EQ(why, path("rows.csv") + ": cannot be written: No space left on device");
+}
+
 TEST_F(CommandFilesTest, AnOptionWithoutEffectIsRefused) {
   for (const char* option : {"--poses", "--map", "--out", "--markdown"}) {
     EXPECT_THAT(
