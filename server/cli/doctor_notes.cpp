@@ -34,7 +34,9 @@ bool look_at_port(const std::string& path, unsigned baud, Notes& notes) {
     }
     return true;
   } catch (const drivers::LineError& error) {
-    notes.bad(error.what(), "Then look again; `ls -l /dev/serial/by-id` shows what is plugged in.");
+    notes.bad(error.what(),
+              "`ls -l /dev/serial/by-id` shows what is plugged in; `fuser " + path +
+                  "` shows which program has it.");
     return false;
   }
 }

@@ -12,12 +12,14 @@
 #include <thread>
 #include <vector>
 
+#include "tests/server/cli/parsed.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "server/cli/carmen_line.hpp"
+#include "server/cli/cli.hpp"
 #include "server/cli/doctor_floor.hpp"
 #include "server/emulate/emulation.hpp"
 #include "sim/replay.hpp"
@@ -48,7 +50,7 @@ track = 0.33
   ASSERT_EQ(bad.size(), 2U);
   EXPECT_THAT(bad[0].sentence, HasSubstr("/dev/no_such_laser"));
   EXPECT_EQ(bad[1].device, "base");
-  for (const Finding& f : bad) EXPECT_NE(f.advice, "");
+  for (const Finding& f : bad) EXPECT_THAT(f.advice, HasSubstr("fuser /dev/no_such_"));
 }
 
 /// The findings about an emulated scanner after `command`; expects a bad one.
