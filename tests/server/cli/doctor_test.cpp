@@ -110,6 +110,21 @@ TEST(Doctor, AnInterruptionStopsTheWheels) {
   fs::remove_all(folder);
 }
 
+TEST(Lms200Log, AFullDiskIsSaid) {
+  namespace fs = std::filesystem;
+  const fs::path link =
+      fs::temp_directory_path() / ("tautline_lms200_log_" + std::to_string(::getpid()));
+  emulate::EmulationOptions options;
+  options.scanner_links = {link};
+  emulate::Emulation emulation(options);
+  emulation.start();
+  testing::internal::CaptureStderr();
+  const tests::Parsed log = tests::parsed(
+      add_lms200_command, {"lms200", "log", link.string(), "--out", "/dev/full", "--scans", "1"});
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("is the disk full?"));
+  EXPECT_EQ(log.status, kNotWell);
+}
+
 /// The findings about emulated floor sensors after `command`.
 std::string floor_words_after(const std::string& command, bool well) {
   namespace fs = std::filesystem;
