@@ -204,6 +204,7 @@ void add_barn_command(Command app, int& status) {
   barn.add_option("--scenarios",
                   command->scenarios,
                   "Run nothing: write each world to this folder as a scenario for the page")
+      .excludes(barn.get_option("--rows"))
       .type_name("DIR");
   barn.add_flag("--json", command->as_json, "Print JSON");
   barn.callback([command, &status] { status = execute(*command); });

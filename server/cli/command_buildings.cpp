@@ -132,6 +132,7 @@ void add_buildings_command(Command app, int& status) {
               command->tour,
               "In each building this many goals, one after another without a restart (200 are a "
               "long tour)")
+          .excludes(buildings.get_option("--scenario"))
           .type_name("GOALS")
           .range(std::size_t{1}, std::size_t{10'000});
   buildings

@@ -181,7 +181,8 @@ void add_reproduce_command(Command app, int& status) {
                   options->reaches,
                   "Only the reaches, as runs in Bullet: so many worlds of each of four kinds")
       .range(1, 10000)
-      .needs(arm);
+      .needs(arm)
+      .excludes(command.get_option("--markdown"));
   for (const Option& other : {filter, robhaz, masuda}) arm.excludes(other);
   for (const char* tables :
        {"--scenarios", "--seeds", "--first-seed", "--paper-only", "--sweeps"}) {

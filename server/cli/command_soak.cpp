@@ -164,6 +164,9 @@ int execute(SoakCommand command) {
   if (command.courses) return execute_courses(command);
   if (command.slopes) return execute_slopes(command);
   if (command.by_hand) return execute_operator(command);
+  if (command.seconds > 0) {
+    throw std::runtime_error("--seconds needs --operator, --slopes or --courses");
+  }
   if (command.options.worlds == 0) command.options.worlds = kWorlds;
   if (!command.scenario.empty()) {
     const sim::Scenario world =
@@ -204,6 +207,7 @@ void add_soak_command(Command app, int& status) {
   soak.add_option("--scenario",
                   command->scenario,
                   "Run nothing: write the first world to this file as a scenario for the page")
+      .excludes(soak.get_option("--rows"))
       .check(refuse_unwritable)
       .type_name("FILE");
   soak.add_flag("--operator",
@@ -223,8 +227,13 @@ void add_soak_command(Command app, int& status) {
       "Instead, drive a robot with floor sensors over random courses of steps, slopes "
       "and trenches. Exit status 3 if it falls, climbs what is above its limits, or "
       "refuses what is not");
-  courses.excludes(soak.get_option("--operator"));
-  courses.excludes(soak.get_option("--slopes"));
+  const Option by_hand = soak.get_option("--operator");
+  courses.excludes(by_hand);
+  courses.excludes(slopes);
+  for (const Option& study : {by_hand, slopes, courses}) {
+    study.excludes(soak.get_option("--controller"));
+    study.excludes(soak.get_option("--list"));
+  }
   soak.add_option(
           "--seconds",
           command->seconds,
@@ -232,8 +241,9 @@ void add_soak_command(Command app, int& status) {
           "With --slopes and --courses: of each drive (default 30 and 240)")
       .range(1.0, 1e7);
   soak.add_option("--physics", command->physics, "With --operator (default: bullet)")
-      .one_of({"bullet", "kinematic"});
-  soak.add_option("--robot", command->robot, "With --operator: only this robot");
+      .one_of({"bullet", "kinematic"})
+      .needs(by_hand);
+  soak.add_option("--robot", command->robot, "With --operator: only this robot").needs(by_hand);
   soak.callback([command, &status] { status = execute(*command); });
 }
 

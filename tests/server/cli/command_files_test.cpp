@@ -130,6 +130,25 @@ TEST_F(CommandFilesTest, AnOptionWithoutEffectIsRefused) {
   EXPECT_THAT(refusal(add_locate_command, {"locate", "x", "--markdown", path("x.md")}),
               AllOf(HasSubstr("--markdown"), HasSubstr("--study")));
   EXPECT_THAT(refusal(add_locate_command, {"locate", "x", "--study"}), HasSubstr("LOG"));
+  const auto soak = [](std::vector<std::string> options) {
+    options.insert(options.begin(), {"soak", "--worlds", "1"});
+    return refusal(add_soak_command, options);
+  };
+  EXPECT_THAT(soak({"--slopes", "--controller", "dwa"}), HasSubstr("--controller"));
+  EXPECT_THAT(soak({"--courses", "--list"}), HasSubstr("--list"));
+  EXPECT_THAT(soak({"--physics", "kinematic"}), HasSubstr("--operator"));
+  EXPECT_THAT(soak({"--robot", "jackal"}), HasSubstr("--operator"));
+  EXPECT_THAT(soak({"--seconds", "5"}), HasSubstr("--operator"));
+  EXPECT_THAT(soak({"--scenario", path("s.json"), "--rows", path("r.csv")}), HasSubstr("--rows"));
+  EXPECT_THAT(
+      refusal(add_barn_command, {"barn", "x", "--scenarios", path("s"), "--rows", path("r.csv")}),
+      HasSubstr("--rows"));
+  EXPECT_THAT(
+      refusal(add_buildings_command, {"buildings", "--tour", "3", "--scenario", path("s.json")}),
+      HasSubstr("--tour"));
+  EXPECT_THAT(refusal(add_reproduce_command,
+                      {"reproduce", "--arm", "--reaches", "1", "--markdown", path("x.md")}),
+              HasSubstr("--markdown"));
 }
 
 TEST_F(CommandFilesTest, ASeedThatTheStoreCannotKeepIsRefused) {
