@@ -21,6 +21,7 @@
 #include "server/emulate/emulation.hpp"
 #include "server/emulate/robot_toml.hpp"
 #include "server/run/scenario_library.hpp"
+#include "server/run/text_file.hpp"
 
 namespace server {
 namespace {
@@ -284,7 +285,7 @@ void add_emulate_command(Command app, int& status) {
   add_base_flags(robot, *options);
   robot.callback([options, &status] {
     EmulationOptions& emulation = options->emulation;
-    std::filesystem::create_directories(options->links);
+    make_folder(options->links);
     const std::size_t scanners = find_scenario(options->scenario).robot.sensors.lasers.size();
     for (std::size_t i = 0; i < scanners; ++i) {
       emulation.scanner_links.push_back(options->links /
