@@ -52,6 +52,7 @@ int execute(LocateCommand& command) {
     throw std::runtime_error("locate needs a LOG and --map FILE, or --study");
   }
   const mapping::Recording log = mapping::read_recording(command.log);
+  warn_of_damage(command.log, log.damage);
   const mapping::LocatedLog found =
       mapping::locate_log(log, seen_walls(read_map(command.map)), mapping::start_of(command.start));
   fmt::print("{}\n", command.as_json ? to_json(found).dump(2) : to_text(found));

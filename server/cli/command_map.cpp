@@ -87,6 +87,9 @@ int execute(MapCommand command) {
       studies.push_back(study_map(std::move(recording), command.options));
     }
   }
+  for (std::size_t i = 0; i < studies.size(); ++i) {
+    warn_of_damage(command.logs[i], studies[i].log.damage);
+  }
   if (command.as_json) {
     fmt::print("{}\n", to_json(studies).dump(2));
   } else {

@@ -12,6 +12,7 @@
 #include "server/record/run_json.hpp"
 #include "server/run/scenario_json.hpp"
 #include "server/run/scenario_library.hpp"
+#include "sim/replay.hpp"
 
 namespace server {
 namespace {
@@ -64,6 +65,7 @@ void print_table(const RunSpec& spec, const HeadlessResult& result, std::int64_t
 }
 
 int execute(const RunCommand& options) {
+  if (options.replays) warn_of_damage(options.scenario, sim::Replay(options.scenario).damage());
   const RunSpec spec = make_spec(options.replays ? ScenarioLibrary::from_log(options.scenario)
                                                  : find_scenario(options.scenario),
                                  options.flags.resolved(),

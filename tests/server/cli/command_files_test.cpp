@@ -93,6 +93,19 @@ TEST_F(CommandFilesTest, ALogMayHaveAnyName) {
               HasSubstr("holds no scan"));
 }
 
+TEST_F(CommandFilesTest, LinesOfALogThatAreLeftOutAreSaid) {
+  write_text(path("lab.log"),
+             "FLASER 3 1 1 1 0 0 0 0 0 0 1.0 lab 1.0\nFLASER 3 nan 1 1 0 0 0 0 0 0 1.1 lab 1.1\n");
+  const auto said =
+      HasSubstr(path("lab.log") + " has lines that were left out: 1 unreadable (line 2: ");
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(refusal(add_replay_command, {"replay", path("lab.log")}), "");
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), said);
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(refusal(add_map_command, {"map", path("lab.log")}), "");
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), said);
+}
+
 TEST_F(CommandFilesTest, ARecordingMayBeNamedAsAScenario) {
   write_text(path("people"), "0 1 0 0\n100 1 5 5\n");
   const std::filesystem::path before = std::filesystem::current_path();
