@@ -245,7 +245,9 @@ void LaserMachine::answered(double now, const Telegram& telegram) {
       begin(Step::Type, now);
       return;
     case Step::Type:
-      if (const auto text = type_text(telegram)) type_ = *text;
+      if (const auto text = type_text(telegram)) {
+        type_ = text->substr(0, text->find_last_not_of(' ') + 1);
+      }
       // A rate other than the ordered one is the device's own: it has restarted.
       if (found_baud_ == 0 || port_baud_ != told_baud_) found_baud_ = port_baud_;
       baud_ = port_baud_;
@@ -253,7 +255,7 @@ void LaserMachine::answered(double now, const Telegram& telegram) {
       return;
     case Step::Status:
       if (const auto status = device_status(telegram)) {
-        software_ = status->software;
+        software_ = status->software.substr(0, status->software.find_last_not_of(' ') + 1);
         variant_ = status->variant;
         measuring_mode_ = status->measuring_mode;
         in_millimetres_ = status->in_millimetres;

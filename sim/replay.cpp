@@ -47,6 +47,11 @@ Replay::Replay(std::istream& log, const std::string& name) : name_(name) {
   read(log);
 }
 
+std::string Replay::damage() const {
+  if (unreadable_ == 0) return {};
+  return std::to_string(unreadable_) + " unreadable (" + first_unreadable_ + ")";
+}
+
 void Replay::read(std::istream& log) {
   std::vector<std::uint32_t> readings_mm;
   std::size_t odometries = 0;
@@ -57,9 +62,8 @@ void Replay::read(std::istream& log) {
     if (const auto* scan = std::get_if<CarmenScan>(&parsed)) {
       keep(*scan, readings_mm);
     } else if (const auto* error = std::get_if<CarmenError>(&parsed)) {
-      if (skipped_.count++ == 0) {
-        skipped_.first_line = lines_;
-        skipped_.first_reason = error->reason;
+      if (unreadable_++ == 0) {
+        first_unreadable_ = "line " + std::to_string(lines_) + ": " + error->reason;
       }
     } else if (std::holds_alternative<CarmenOdometry>(parsed)) {
       ++odometries;
@@ -69,10 +73,7 @@ void Replay::read(std::istream& log) {
     if (lines_ == 0) throw std::runtime_error("The log " + name_ + " is empty.");
     std::string found =
         std::to_string(lines_) + " lines, " + std::to_string(odometries) + " of them odometry";
-    if (skipped_.count > 0) {
-      found += ", " + std::to_string(skipped_.count) + " unreadable (line " +
-               std::to_string(skipped_.first_line) + ": " + skipped_.first_reason + ")";
-    }
+    if (unreadable_ > 0) found += ", " + damage();
     throw std::runtime_error("The log " + name_ +
                              " holds no scan (FLASER, RLASER or ROBOTLASER1): " + found + ".");
   }

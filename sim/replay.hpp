@@ -13,13 +13,6 @@
 
 namespace sim {
 
-/// Lines skipped as unreadable.
-struct SkippedLines {
-  std::size_t count = 0;
-  std::size_t first_line = 0;  // counted from 1
-  std::string first_reason{};
-};
-
 /// Replays a log one scan per tick, timed by its stamps. If stamps are missing, repeated or
 /// decreasing, a scan takes 0.2 s. The run clock starts at 0 with the first scan.
 ///
@@ -47,7 +40,8 @@ class Replay final : public algo::Robot {
   /// [s] Of the current scan, on the recording's clock; 0 if the log has none.
   double recorded_stamp() const { return scans_[current_].recorded; }
   CarmenUnit unit() const { return unit_; }
-  const SkippedLines& skipped() const { return skipped_; }
+  /// The lines that were left out: "3 unreadable (line 1: REASON)"; empty if there are none.
+  std::string damage() const;
 
  private:
   struct Scan {
@@ -71,7 +65,8 @@ class Replay final : public algo::Robot {
   std::vector<Scan> scans_{};
   std::vector<std::uint16_t> wire_{};
   CarmenUnit unit_ = CarmenUnit::Centimetre;
-  SkippedLines skipped_{};
+  std::size_t unreadable_ = 0;  // lines
+  std::string first_unreadable_{};
   std::size_t lines_ = 0;
   std::size_t current_ = 0;
 };

@@ -116,6 +116,11 @@ sim::Scenario find_scenario(const std::string& name) {
       .load(name);
 }
 
+void warn_of_damage(const std::string& log, const std::string& damage) {
+  if (damage.empty()) return;
+  fmt::print(stderr, "tautline: warning: {} has lines that were left out: {}.\n", log, damage);
+}
+
 ProgressLine::ProgressLine() : interactive_(isatty(STDERR_FILENO) != 0) {}
 
 ProgressLine::~ProgressLine() {

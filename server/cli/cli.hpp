@@ -80,6 +80,9 @@ struct RunFlags {
 /// Loads `name`: a path if such a file exists or it looks like a path, else a name of the library.
 sim::Scenario find_scenario(const std::string& name);
 
+/// Warns of `damage`, sim::Replay::damage() of `log`, on standard error.
+void warn_of_damage(const std::string& log, const std::string& damage);
+
 /// Progress on standard error, only if that is a terminal.
 class ProgressLine {
  public:

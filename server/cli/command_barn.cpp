@@ -155,12 +155,12 @@ int execute(BarnCommand command) {
   refuse_nothing(worlds.size() * command.options.repeats, command.options.pool.shard, "runs");
   const barn::Result result = with_progress(
       command.options.pool, "runs", [&] { return run_worlds(worlds, command.options); });
-  if (!command.rows.empty()) write_table(rows_table(result), command.rows);
   if (command.as_json) {
     fmt::print("{}\n", result_json(result).dump(2));
   } else {
     print_table(result);
   }
+  if (!command.rows.empty()) write_table(rows_table(result), command.rows);
   return kReached;
 }
 
@@ -204,6 +204,7 @@ void add_barn_command(Command app, int& status) {
   barn.add_option("--scenarios",
                   command->scenarios,
                   "Run nothing: write each world to this folder as a scenario for the page")
+      .excludes(barn.get_option("--rows"))
       .type_name("DIR");
   barn.add_flag("--json", command->as_json, "Print JSON");
   barn.callback([command, &status] { status = execute(*command); });

@@ -65,13 +65,13 @@ int execute_tours(const BuildingsCommand& command) {
                  "tours");
   const std::vector<buildings::Tour> tours =
       with_progress(options.buildings.pool, "tours", [&] { return run_tours(options); });
-  if (!command.rows.empty()) write_table(legs_table(tours), command.rows);
   if (command.as_json) {
     fmt::print("{}\n", tours_json(tours).dump(2));
-    return kReached;
+  } else {
+    if (command.list) fmt::print("{}\n", to_text(tour_faults_table(tours)));
+    fmt::print("{}", to_markdown(tours_table(tours)));
   }
-  if (command.list) fmt::print("{}\n", to_text(tour_faults_table(tours)));
-  fmt::print("{}", to_markdown(tours_table(tours)));
+  if (!command.rows.empty()) write_table(legs_table(tours), command.rows);
   return kReached;
 }
 
@@ -88,17 +88,17 @@ int execute(BuildingsCommand command) {
   refuse_nothing(seeds_of(command.options).size(), command.options.pool.shard, "buildings");
   const std::vector<buildings::BuildingRun> runs = with_progress(
       command.options.pool, "buildings", [&] { return run_buildings(command.options); });
-  if (!command.rows.empty()) write_table(rows_table(runs), command.rows);
   if (command.as_json) {
     fmt::print("{}\n", to_json(runs).dump(2));
-    return kReached;
+  } else {
+    if (command.list) fmt::print("{}\n", to_text(faults_table(runs)));
+    const buildings::TickTimes ticks = tick_times(runs);
+    fmt::print("{}\ncontrol tick p50 {:.0f} us, p99 {:.0f} us\n",
+               to_text(figures_table(runs)),
+               ticks.p50,
+               ticks.p99);
   }
-  if (command.list) fmt::print("{}\n", to_text(faults_table(runs)));
-  const buildings::TickTimes ticks = tick_times(runs);
-  fmt::print("{}\ncontrol tick p50 {:.0f} us, p99 {:.0f} us\n",
-             to_text(figures_table(runs)),
-             ticks.p50,
-             ticks.p99);
+  if (!command.rows.empty()) write_table(rows_table(runs), command.rows);
   return kReached;
 }
 
@@ -132,6 +132,7 @@ void add_buildings_command(Command app, int& status) {
               command->tour,
               "In each building this many goals, one after another without a restart (200 are a "
               "long tour)")
+          .excludes(buildings.get_option("--scenario"))
           .type_name("GOALS")
           .range(std::size_t{1}, std::size_t{10'000});
   buildings

@@ -35,13 +35,13 @@ int execute(CompareCommand command) {
     };
     comparison = compare::compare(command.options);
   }
-  if (!command.rows.empty()) write_table(rows_table(comparison), command.rows);
-  if (!command.markdown.empty()) compare::write_markdown(comparison, command.markdown);
   if (command.as_json) {
     fmt::print("{}\n", compare::to_json(comparison).dump(2));
   } else {
     fmt::print("{}", compare::to_text(comparison));
   }
+  if (!command.rows.empty()) write_table(rows_table(comparison), command.rows);
+  if (!command.markdown.empty()) compare::write_markdown(comparison, command.markdown);
   return compare::strip_on_layouts(comparison.layouts).held() ? kReached : kNotHeld;
 }
 

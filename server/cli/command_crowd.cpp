@@ -14,6 +14,7 @@
 #include "server/run/json_limits.hpp"
 #include "server/run/json_reader.hpp"
 #include "server/run/scenario_json.hpp"
+#include "server/run/scenario_library.hpp"
 #include "server/run/text_file.hpp"
 
 namespace server {
@@ -49,7 +50,9 @@ int execute(CrowdCommand command) {
   refuse_shared_files({{"FILE", command.file}, {"--robot-model", command.flags.robot}},
                       {{"--tracks", command.tracks}, {"--scenario", command.scenario}});
   const crowd::Recording recording = crowd::read_people(std::filesystem::path(command.file));
-  const RunSpec robot = make_spec(find_scenario(kScenario), command.flags.resolved(), own_robots());
+  const RunSpec robot = make_spec(ScenarioLibrary({}, {}, own_robots()).load(kScenario),
+                                  command.flags.resolved(),
+                                  own_robots());
   if (!command.scenario.empty()) {
     write_scenario(recording, robot.scenario, command);
     return kReached;
@@ -57,8 +60,8 @@ int execute(CrowdCommand command) {
   const crowd::CrowdStudy study = with_progress(command.pool, "crossings", [&] {
     return crowd::study_crowd(recording, robot, command.pool);
   });
-  if (!command.tracks.empty()) crowd::write_tracks(study, robot.scenario.period, command.tracks);
   fmt::print("{}\n", command.as_json ? to_json(study).dump(2) : to_text(study));
+  if (!command.tracks.empty()) crowd::write_tracks(study, robot.scenario.period, command.tracks);
   return kReached;
 }
 

@@ -6,6 +6,7 @@
 
 #include "server/cli/cli.hpp"
 #include "server/cli/doctor.hpp"
+#include "server/cli/signals.hpp"
 
 namespace server {
 namespace {
@@ -40,9 +41,12 @@ void add_doctor_command(Command app, int& status) {
       .type_name("SECONDS")
       .range(1.0, 300.0)
       .show_default();
-  command.footer("Exit status: 0 no fault, 2 a device has a fault, 1 the file is invalid.");
+  command.footer(
+      "Exit status: 0 no fault, 2 a device has a fault, 1 the file is invalid, or interrupted.");
   command.callback([options, &status] {
     const drivers::RobotFile file = drivers::read_robot_file(options->robot);
+    heed_signals();
+    options->doctor.interrupted = end_requested;
     const bool well = examine(file, options->doctor, print);
     fmt::print("{}\n", well ? "All is well." : "There are faults; see BAD above.");
     status = well ? 0 : kNotWell;

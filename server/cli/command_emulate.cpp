@@ -16,10 +16,12 @@
 #include <unistd.h>
 
 #include "server/cli/cli.hpp"
+#include "server/cli/output_files.hpp"
 #include "server/cli/signals.hpp"
 #include "server/emulate/emulation.hpp"
 #include "server/emulate/robot_toml.hpp"
 #include "server/run/scenario_library.hpp"
+#include "server/run/text_file.hpp"
 
 namespace server {
 namespace {
@@ -126,6 +128,8 @@ void show_robot_file(const EmulationOptions& emulation, const std::filesystem::p
 
 void emulate_devices(EmulateCommand& options) {
   EmulationOptions& emulation = options.emulation;
+  refuse_shared_files({{"--log", emulation.log}, {"--scenario", options.scenario}},
+                      {{"--record", emulation.record}});
   emulation.scenario = find_scenario(options.scenario);
   if (!emulation.scenario.log.empty()) emulation.log = emulation.scenario.log;
   emulation.scanner.rs422 = !options.rs232;
@@ -281,7 +285,7 @@ void add_emulate_command(Command app, int& status) {
   add_base_flags(robot, *options);
   robot.callback([options, &status] {
     EmulationOptions& emulation = options->emulation;
-    std::filesystem::create_directories(options->links);
+    make_folder(options->links);
     const std::size_t scanners = find_scenario(options->scenario).robot.sensors.lasers.size();
     for (std::size_t i = 0; i < scanners; ++i) {
       emulation.scanner_links.push_back(options->links /

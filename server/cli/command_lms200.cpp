@@ -120,9 +120,9 @@ void write_log(Lms200Device& laser, const Lms200Command& options) {
     if (!next_scan(laser, scan)) break;
     if (!first) first = scan.stamp;
     out << carmen_line(scan, host.data(), wall_now(scan), scan.stamp - *first) << '\n';
-    if (!out) throw std::runtime_error("The log cannot be written: is the disk full?");
+    if (!out) break;
   }
-  out.flush();
+  if (!out.flush()) throw std::runtime_error("The log cannot be written: is the disk full?");
 }
 
 void add_common(Command command, Lms200Command& options) {

@@ -40,8 +40,8 @@ int run_study(LocateCommand& command) {
     count(" round dead ends");
     study.dead_ends = study_dead_ends(command.options);
   }
-  if (!command.markdown.empty()) write_markdown(study, command.markdown);
   fmt::print("{}\n", command.as_json ? to_json(study).dump(2) : to_text(study));
+  if (!command.markdown.empty()) write_markdown(study, command.markdown);
   return kReached;
 }
 
@@ -52,10 +52,11 @@ int execute(LocateCommand& command) {
     throw std::runtime_error("locate needs a LOG and --map FILE, or --study");
   }
   const mapping::Recording log = mapping::read_recording(command.log);
+  warn_of_damage(command.log, log.damage);
   const mapping::LocatedLog found =
       mapping::locate_log(log, seen_walls(read_map(command.map)), mapping::start_of(command.start));
-  if (!command.poses.empty()) write_poses(log, found, command.poses);
   fmt::print("{}\n", command.as_json ? to_json(found).dump(2) : to_text(found));
+  if (!command.poses.empty()) write_poses(log, found, command.poses);
   return found.located > 0 ? kReached : kNotReached;
 }
 

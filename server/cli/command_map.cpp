@@ -87,6 +87,14 @@ int execute(MapCommand command) {
       studies.push_back(study_map(std::move(recording), command.options));
     }
   }
+  for (std::size_t i = 0; i < studies.size(); ++i) {
+    warn_of_damage(command.logs[i], studies[i].log.damage);
+  }
+  if (command.as_json) {
+    fmt::print("{}\n", to_json(studies).dump(2));
+  } else {
+    for (const mapping::MapStudy& study : studies) fmt::print("{}\n", to_text(study));
+  }
   if (!command.out.empty()) write_picture(studies.front(), command.out);
   if (!command.poses.empty()) write_poses(studies.front(), command.poses);
   if (!command.map.empty()) {
@@ -94,11 +102,6 @@ int execute(MapCommand command) {
     write_map(mapping::map_along(study.log, first_path(study)), command.map);
   }
   if (!command.markdown.empty()) write_markdown(studies, command.markdown);
-  if (command.as_json) {
-    fmt::print("{}\n", to_json(studies).dump(2));
-  } else {
-    for (const mapping::MapStudy& study : studies) fmt::print("{}\n", to_text(study));
-  }
   return kReached;
 }
 

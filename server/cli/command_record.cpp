@@ -34,6 +34,9 @@ std::shared_ptr<RecordCommand> add_common(Command command) {
 }
 
 int export_run(const RecordCommand& options) {
+  refuse_shared_files(
+      {{"--db", options.database}, {"the journal of --db", options.database + "-wal"}},
+      {{"--output", options.output}});
   db::RunReader reader(options.database);
   const auto row = reader.get(options.run);
   if (!row) {

@@ -115,12 +115,6 @@ int execute(ReproduceCommand options) {
            }});
     }
   }
-  if (!options.markdown.empty()) {
-    std::vector<reproduce::Section> sections =
-        reproduce::study_sections(file, study, reproduce::kPictures);
-    if (options.sweeps) sections.push_back(reproduce::sweeps_section(sweeps, sweep_seeds));
-    reproduce::write_reproduction(options.markdown, file, study, sections);
-  }
   if (options.as_json) {
     nlohmann::json out = reproduce::to_json(study);
     if (options.sweeps) out["sweeps"] = reproduce::to_json(sweeps);
@@ -130,6 +124,12 @@ int execute(ReproduceCommand options) {
                reproduce::to_text(study),
                reproduce::to_text(sweeps),
                reproduce::checks_sentence(study.checks));
+  }
+  if (!options.markdown.empty()) {
+    std::vector<reproduce::Section> sections =
+        reproduce::study_sections(file, study, reproduce::kPictures);
+    if (options.sweeps) sections.push_back(reproduce::sweeps_section(sweeps, sweep_seeds));
+    reproduce::write_reproduction(options.markdown, file, study, sections);
   }
   return reproduce::all_held(study.checks) ? kReached : kNotHeld;
 }
@@ -181,7 +181,8 @@ void add_reproduce_command(Command app, int& status) {
                   options->reaches,
                   "Only the reaches, as runs in Bullet: so many worlds of each of four kinds")
       .range(1, 10000)
-      .needs(arm);
+      .needs(arm)
+      .excludes(command.get_option("--markdown"));
   for (const Option& other : {filter, robhaz, masuda}) arm.excludes(other);
   for (const char* tables :
        {"--scenarios", "--seeds", "--first-seed", "--paper-only", "--sweeps"}) {

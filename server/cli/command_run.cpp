@@ -11,6 +11,8 @@
 #include "server/record/headless.hpp"
 #include "server/record/run_json.hpp"
 #include "server/run/scenario_json.hpp"
+#include "server/run/scenario_library.hpp"
+#include "sim/replay.hpp"
 
 namespace server {
 namespace {
@@ -18,7 +20,8 @@ namespace {
 using nlohmann::json;
 
 struct RunCommand {
-  std::string scenario{};
+  std::string scenario{};  // or a log
+  bool replays = false;
   std::string out{};
   double pace = 0;
   bool as_json = false;
@@ -62,8 +65,11 @@ void print_table(const RunSpec& spec, const HeadlessResult& result, std::int64_t
 }
 
 int execute(const RunCommand& options) {
-  const RunSpec spec =
-      make_spec(find_scenario(options.scenario), options.flags.resolved(), own_robots());
+  if (options.replays) warn_of_damage(options.scenario, sim::Replay(options.scenario).damage());
+  const RunSpec spec = make_spec(options.replays ? ScenarioLibrary::from_log(options.scenario)
+                                                 : find_scenario(options.scenario),
+                                 options.flags.resolved(),
+                                 own_robots());
   const std::unique_ptr<algo::Robot> robot = make_robot(spec);
   std::unique_ptr<Recorder> recorder;
   HeadlessOptions headless;
@@ -140,6 +146,7 @@ void add_run_command(Command app, int& status) {
 
 void add_replay_command(Command app, int& status) {
   auto options = std::make_shared<RunCommand>();
+  options->replays = true;
   const Command command =
       app.add_subcommand("replay", "Replay a CARMEN laser log through the whole pipeline");
   command.add_option("LOG", options->scenario, "A CARMEN log file").required().existing_file();

@@ -95,7 +95,6 @@ int execute_operator(const SoakCommand& command) {
   refuse_nothing(options.worlds * options.robots.size(), options.pool.shard, "drives");
   const soak::OperatorStudy study =
       with_progress(options.pool, "worlds", [&] { return run_operator(options); });
-  if (!command.rows.empty()) write_table(operator_rows(study), command.rows);
   for (const soak::DrivenWorld& world : study.worlds) {
     for (std::size_t hand = 0; hand < soak::kHands.size(); ++hand) {
       if (soak::kHands.at(hand) == soak::Hand::Raw) continue;
@@ -110,6 +109,7 @@ int execute_operator(const SoakCommand& command) {
   }
   fmt::print("{}", to_text(operator_table(study)));
   if (!study.places.empty()) fmt::print("\n{}", to_text(places_table(study)));
+  if (!command.rows.empty()) write_table(operator_rows(study), command.rows);
   return soak::counted_contacts(study) > 0 ? kNotHeld : kReached;
 }
 
@@ -126,12 +126,12 @@ int execute_slopes(const SoakCommand& command) {
   refuse_nothing(options.worlds, options.pool.shard, "worlds");
   const std::vector<soak::SlopeRow> rows =
       with_progress(options.pool, "worlds", [&] { return run_slopes(options); });
-  if (!command.rows.empty()) write_table(slope_rows(rows), command.rows);
   for (const soak::SlopeRow& row : rows) {
     if (!row.counts() || !row.guarded.overturned) continue;
     fmt::print("world {}: turned over after {:.1f} s\n", row.seed, row.guarded.seconds);
   }
   fmt::print("{}", to_text(slopes_table(rows)));
+  if (!command.rows.empty()) write_table(slope_rows(rows), command.rows);
   return soak::turned_over(rows) > 0 ? kNotHeld : kReached;
 }
 
@@ -149,7 +149,6 @@ int execute_courses(const SoakCommand& command) {
   refuse_nothing(options.worlds, options.pool.shard, "courses");
   const std::vector<soak::CourseRow> rows =
       with_progress(options.pool, "courses", [&] { return run_courses(options); });
-  if (!command.rows.empty()) write_table(course_rows(rows), command.rows);
   bool fault = false;
   for (const soak::CourseRow& row : rows) {
     if (!soak::is_fault(row)) continue;
@@ -157,6 +156,7 @@ int execute_courses(const SoakCommand& command) {
     fmt::print("course {}: {}{}\n", row.seed, row.end.fell ? "fell, " : "", row.end.words);
   }
   fmt::print("{}", to_text(courses_table(rows)));
+  if (!command.rows.empty()) write_table(course_rows(rows), command.rows);
   return fault ? kNotHeld : kReached;
 }
 
@@ -164,6 +164,9 @@ int execute(SoakCommand command) {
   if (command.courses) return execute_courses(command);
   if (command.slopes) return execute_slopes(command);
   if (command.by_hand) return execute_operator(command);
+  if (command.seconds > 0) {
+    throw std::runtime_error("--seconds needs --operator, --slopes or --courses");
+  }
   if (command.options.worlds == 0) command.options.worlds = kWorlds;
   if (!command.scenario.empty()) {
     const sim::Scenario world =
@@ -174,9 +177,9 @@ int execute(SoakCommand command) {
   refuse_nothing(command.options.worlds, command.options.pool.shard, "worlds");
   const std::vector<soak::World> worlds =
       with_progress(command.options.pool, "worlds", [&] { return run_worlds(command.options); });
-  if (!command.rows.empty()) write_table(rows_table(worlds), command.rows);
   print_worlds(worlds, command.list);
   print_table(worlds);
+  if (!command.rows.empty()) write_table(rows_table(worlds), command.rows);
   const bool fault = std::ranges::any_of(
       worlds, [](const soak::World& world) { return soak::is_fault(world.row); });
   return fault ? kNotHeld : kReached;
@@ -204,6 +207,7 @@ void add_soak_command(Command app, int& status) {
   soak.add_option("--scenario",
                   command->scenario,
                   "Run nothing: write the first world to this file as a scenario for the page")
+      .excludes(soak.get_option("--rows"))
       .check(refuse_unwritable)
       .type_name("FILE");
   soak.add_flag("--operator",
@@ -223,8 +227,13 @@ void add_soak_command(Command app, int& status) {
       "Instead, drive a robot with floor sensors over random courses of steps, slopes "
       "and trenches. Exit status 3 if it falls, climbs what is above its limits, or "
       "refuses what is not");
-  courses.excludes(soak.get_option("--operator"));
-  courses.excludes(soak.get_option("--slopes"));
+  const Option by_hand = soak.get_option("--operator");
+  courses.excludes(by_hand);
+  courses.excludes(slopes);
+  for (const Option& study : {by_hand, slopes, courses}) {
+    study.excludes(soak.get_option("--controller"));
+    study.excludes(soak.get_option("--list"));
+  }
   soak.add_option(
           "--seconds",
           command->seconds,
@@ -232,8 +241,9 @@ void add_soak_command(Command app, int& status) {
           "With --slopes and --courses: of each drive (default 30 and 240)")
       .range(1.0, 1e7);
   soak.add_option("--physics", command->physics, "With --operator (default: bullet)")
-      .one_of({"bullet", "kinematic"});
-  soak.add_option("--robot", command->robot, "With --operator: only this robot");
+      .one_of({"bullet", "kinematic"})
+      .needs(by_hand);
+  soak.add_option("--robot", command->robot, "With --operator: only this robot").needs(by_hand);
   soak.callback([command, &status] { status = execute(*command); });
 }
 

@@ -72,13 +72,15 @@ bool look_at_dazzle(const Tally& tally, Notes& notes) {
   return tally.blinded == 0 && tally.dazzled == 0;
 }
 
-void look_at_scans(drivers::lms200::Lms200Device& laser, double seconds, Notes& notes) {
+void look_at_scans(drivers::lms200::Lms200Device& laser,
+                   const DoctorOptions& options,
+                   Notes& notes) {
   const drivers::lms200::LaserReport before = laser.details();
   algo::LaserScan scan;
   Tally tally;
   const double begun = steady_now();
-  while (steady_now() < begun + seconds) {
-    pause();
+  while (steady_now() < begun + options.measuring) {
+    pause(options);
     if (laser.take(scan)) add(scan, tally);
   }
   const drivers::lms200::LaserReport after = laser.details();
@@ -122,8 +124,9 @@ bool look_at_laser(const drivers::LaserEntry& entry,
   Notes notes(entry.name, found);
   if (!look_at_port(entry.port, entry.setup.baud, notes)) return false;
   drivers::lms200::Lms200Device laser(entry.name, entry.port, entry.setup);
-  const bool runs = laser.comes_to_run(options.patience);
+  const bool runs = laser.comes_to_run(options.patience, options.interrupted);
   const drivers::lms200::LaserReport report = laser.details();
+  pause(options);
   if (!runs) {
     notes.bad(report.trouble,
               fmt::format("After power-on a scanner takes up to 60 s: --patience 70 waits for it "
@@ -150,7 +153,7 @@ bool look_at_laser(const drivers::LaserEntry& entry,
       notes.bad(health, "Switch it off and on; if it stays, read its error memory.");
     }
   }
-  look_at_scans(laser, options.measuring, notes);
+  look_at_scans(laser, options, notes);
   return notes.all_well();
 }
 
@@ -183,14 +186,14 @@ struct Drive {
   double turned = 0;
 };
 
-Drive drive_for_a_second(drivers::Base& base, double speed) {
+Drive drive_for_a_second(drivers::Base& base, double speed, const DoctorOptions& options) {
   const algo::Pose2 before = base.state().pose;
   const double begun = steady_now();
   while (steady_now() < begun + 1.0) {
     const drivers::BaseState state = base.state();
     if (state.stop_button || state.bumper_front || state.bumper_rear || !state.running) break;
     base.drive({speed, 0});
-    pause();
+    pause(options);
   }
   base.drive({});  // brakes along the driving ramp
   const double told = speed * (steady_now() - begun);
@@ -212,12 +215,15 @@ bool drove_as_told(double told, double came) {
 
 namespace {
 
-void look_at_wheels(drivers::Base& base, const drivers::RobotFile& file, Notes& notes) {
+void look_at_wheels(drivers::Base& base,
+                    const drivers::RobotFile& file,
+                    const DoctorOptions& options,
+                    Notes& notes) {
   base.enable(true);
   const double until = steady_now() + 2.0;
   while (!base.state().motors_on && steady_now() < until) {
     base.stop();  // an analog base's relay closes only while ticks come
-    pause();
+    pause(options);
   }
   if (!base.state().motors_on) {
     notes.bad("The motors do not switch on.", "Release the stop button; look at the motor power.");
@@ -225,8 +231,8 @@ void look_at_wheels(drivers::Base& base, const drivers::RobotFile& file, Notes& 
     return;
   }
   const double speed = std::min(0.05, file.limits.speed);
-  const Drive ahead = drive_for_a_second(base, speed);
-  const Drive back = drive_for_a_second(base, -speed);
+  const Drive ahead = drive_for_a_second(base, speed, options);
+  const Drive back = drive_for_a_second(base, -speed, options);
   base.enable(false);
   const std::string ways =
       fmt::format("Commanded {:.0f} mm ahead and {:.0f} back, it reports {:.0f} and {:.0f} mm.",
@@ -261,7 +267,7 @@ bool look_at_base(const drivers::RobotFile& file,
   const std::unique_ptr<drivers::Base> opened = drivers::open_base(entry);
   drivers::Base& base = *opened;
   const double until = steady_now() + options.patience;
-  while (!base.state().running && steady_now() < until) pause();
+  while (!base.state().running && steady_now() < until) pause(options);
   const algo::DeviceReport report = base.report();
   const drivers::BaseState state = base.state();
   if (!state.running) {
@@ -290,7 +296,7 @@ bool look_at_base(const drivers::RobotFile& file,
     notes.note("The wheels were not turned.",
                "With the wheels off the floor: --move turns them for two seconds.");
   } else if (notes.all_well()) {
-    look_at_wheels(base, file, notes);
+    look_at_wheels(base, file, options, notes);
   }
   return notes.all_well();
 }

@@ -22,9 +22,11 @@ struct DoctorOptions {
   bool move = false;     // may turn the wheels, briefly and slowly
   double patience = 20;  // [s] to find and set up each device
   double measuring = 3;  // [s] of scans to check
+  std::function<bool()> interrupted = [] { return false; };
 };
 
-/// Runs all checks in turn and calls `found` for each finding. True when no finding is bad.
+/// Runs all checks in turn and calls `found` for each finding. True when no finding is bad. Throws
+/// std::runtime_error when interrupted, with the wheels stopped and each device left in order.
 bool examine(const drivers::RobotFile& file,
              const DoctorOptions& options,
              const std::function<void(const Finding&)>& found);

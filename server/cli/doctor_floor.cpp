@@ -51,7 +51,7 @@ bool look_at_floor_sensors(const drivers::RobotFile& file,
   if (!look_at_port(entry.port, entry.setup.baud, notes)) return false;
   drivers::psd::PsdDevice device(entry.port, entry.setup);
   const double until = drivers::steady_now() + options.patience;
-  while (!device.state().running && drivers::steady_now() < until) pause();
+  while (!device.state().running && drivers::steady_now() < until) pause(options);
   if (!device.state().running) {
     notes.bad(device.report().sentence,
               "docs/hardware.md describes the line that the adapter must send.");
@@ -64,7 +64,7 @@ bool look_at_floor_sensors(const drivers::RobotFile& file,
       options.measuring, 1.5 * drivers::psd::StuckWatch::kReadings * drivers::psd::kPeriod);
   algo::FloorRanges seen;
   while (drivers::steady_now() < begun + measuring) {
-    pause();
+    pause(options);
     device.take(seen);
   }
   const double rate =

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <stdexcept>
 #include <thread>
 
 #include <fmt/format.h>
@@ -11,8 +12,9 @@
 
 namespace server::doctor {
 
-void pause() {
+void pause(const DoctorOptions& options) {
   constexpr double kLook = 0.02;  // [s]
+  if (options.interrupted()) throw std::runtime_error("Interrupted: the checks are not complete.");
   std::this_thread::sleep_for(std::chrono::duration<double>(kLook));
 }
 
@@ -32,7 +34,9 @@ bool look_at_port(const std::string& path, unsigned baud, Notes& notes) {
     }
     return true;
   } catch (const drivers::LineError& error) {
-    notes.bad(error.what(), "Then look again; `ls -l /dev/serial/by-id` shows what is plugged in.");
+    notes.bad(error.what(),
+              "`ls -l /dev/serial/by-id` shows what is plugged in; `fuser " + path +
+                  "` shows which program has it.");
     return false;
   }
 }

@@ -11,8 +11,8 @@ namespace server::doctor {
 
 using Found = std::function<void(const Finding&)>;
 
-/// Waits until the next poll of a device.
-void pause();
+/// Waits until the next poll of a device. Throws std::runtime_error when interrupted.
+void pause(const DoctorOptions& options);
 
 /// Findings about one device.
 class Notes {

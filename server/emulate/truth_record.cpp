@@ -2,6 +2,7 @@
 #include "server/emulate/truth_record.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -35,8 +36,11 @@ TruthRecord::TruthRecord(const std::filesystem::path& path) {
 
 void TruthRecord::write(std::string_view line, bool at_once) {
   const std::lock_guard held(mutex_);
-  std::fwrite(line.data(), 1, line.size(), file_.get());
-  if (at_once) std::fflush(file_.get());
+  const bool written = std::fwrite(line.data(), 1, line.size(), file_.get()) == line.size();
+  if (written && (!at_once || std::fflush(file_.get()) == 0)) return;
+  if (!std::exchange(incomplete_, true)) {
+    fmt::print(stderr, "tautline: The record is incomplete: is the disk full?\n");
+  }
 }
 
 void TruthRecord::scan(std::string_view device, const drivers::lms200::SentScan& scan, bool heard) {

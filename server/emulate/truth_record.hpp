@@ -25,7 +25,7 @@ namespace server::emulate {
 ///   pose TIME X Y HEADING LEFT RIGHT            [mm, mrad, mm/s] true pose and speeds, at 10 Hz
 ///   event TIME TEXT                             an injected fault
 ///
-/// Thread-safe.
+/// Thread-safe. Says once on standard error that the record is incomplete, such as on a full disk.
 class TruthRecord {
  public:
   /// Records nothing without a path. Throws std::runtime_error with a sentence.
@@ -44,6 +44,7 @@ class TruthRecord {
 
   std::unique_ptr<std::FILE, Close> file_{};
   std::mutex mutex_{};
+  bool incomplete_ = false;
 };
 
 }  // namespace server::emulate

@@ -10,6 +10,7 @@
 #include "algo/filter/filter.hpp"
 #include "algo/strip/strip_law.hpp"
 #include "algo/units.hpp"
+#include "server/run/json_limits.hpp"
 #include "server/run/json_reader.hpp"
 #include "server/run/robot_library.hpp"
 #include "server/run/text_file.hpp"
@@ -135,10 +136,8 @@ std::vector<World> worlds_from_json(const json& document) {
 std::vector<World> read_worlds(const std::string& file) {
   const std::string text = read_text(file);
   try {
-    return worlds_from_json(json::parse(text));
-  } catch (const json::exception& e) {
-    throw std::runtime_error(file + " is not JSON: " + e.what());
-  } catch (const DocumentError& e) {
+    return worlds_from_json(parse_json(text, kOwnDocument));
+  } catch (const std::runtime_error& e) {
     throw std::runtime_error(file + ": " + e.what());
   }
 }

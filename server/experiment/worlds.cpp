@@ -11,6 +11,8 @@
 namespace server::experiment {
 namespace {
 
+constexpr double kLastWorldSeed = 0x1p53 - 1;
+
 /// Drives as it is told.
 class ToldController final : public algo::Controller {
  public:
@@ -58,11 +60,14 @@ class Worlds::World {
 
   void step(const WorldAction& action) {
     if (action.seed >= 0) {
+      if (action.seed > kLastWorldSeed) throw std::runtime_error("a seed is beyond 2^53 - 1");
       begin(static_cast<std::uint64_t>(action.seed));
       return;
     }
     twist_ = {action.v, action.omega};
-    if (!algo::finite(twist_)) throw std::runtime_error("an action is not a finite number");
+    if (!algo::finite(twist_) || std::isnan(action.seed)) {
+      throw std::runtime_error("an action is not a finite number");
+    }
     pipeline_.decide(t_);
     if (!robot_->step(t_.command, t_.observation)) throw std::runtime_error("the log has ended");
     look({});

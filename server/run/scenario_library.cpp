@@ -47,16 +47,6 @@ sim::Scenario with_map_in(const fs::path& folder, sim::Scenario scenario) {
   return scenario;
 }
 
-sim::Scenario log_scenario(const fs::path& path) {
-  sim::Scenario s;
-  s.name = path.stem().string();
-  s.title = "Log " + path.filename().string();
-  s.description = "A recorded laser log, replayed through the same pipeline.";
-  s.robot.name = "log";
-  s.log = path.string();
-  return s;
-}
-
 }  // namespace
 
 ScenarioLibrary::ScenarioLibrary(fs::path own, fs::path logs, RobotLibrary robots)
@@ -79,7 +69,7 @@ std::vector<ScenarioEntry> ScenarioLibrary::list() const {
     }
   });
   for_each_file(logs_, ".log", [&](const fs::path& path) {
-    const sim::Scenario s = log_scenario(path);
+    const sim::Scenario s = from_log(path);
     entries.push_back({s.name, s.title, s.description, true, true});
   });
   return entries;
@@ -104,7 +94,7 @@ sim::Scenario ScenarioLibrary::load(const std::string& name) const {
       return placed(parse(read_file(own, shown), shown, robots_));
     }
     const fs::path log = logs_ / (name + ".log");
-    if (!logs_.empty() && fs::is_regular_file(log, error)) return log_scenario(log);
+    if (!logs_.empty() && fs::is_regular_file(log, error)) return from_log(log);
   }
   std::string known;
   for (const ScenarioEntry& entry : list()) known += (known.empty() ? "" : ", ") + entry.name;
@@ -180,9 +170,19 @@ fs::path ScenarioLibrary::own_map(const std::string& name) const {
 }
 
 sim::Scenario ScenarioLibrary::from_file(const fs::path& path, const RobotLibrary& robots) {
-  if (path.extension() == ".log") return log_scenario(path);
+  if (path.extension() == ".log") return from_log(path);
   return with_map_in(fs::absolute(path).parent_path(),
                      parse(read_file(path, path.string()), path.string(), robots));
+}
+
+sim::Scenario ScenarioLibrary::from_log(const fs::path& path) {
+  sim::Scenario s;
+  s.name = path.stem().string();
+  s.title = "Log " + path.filename().string();
+  s.description = "A recorded laser log, replayed through the same pipeline.";
+  s.robot.name = "log";
+  s.log = path.string();
+  return s;
 }
 
 }  // namespace server

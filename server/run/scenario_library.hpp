@@ -49,6 +49,8 @@ class ScenarioLibrary {
   /// network is never used as a path.
   static sim::Scenario from_file(const std::filesystem::path& path,
                                  const RobotLibrary& robots = RobotLibrary());
+  /// Replays the CARMEN log `path`, whatever its name ends in.
+  static sim::Scenario from_log(const std::filesystem::path& path);
 
  private:
   std::filesystem::path own_map(const std::string& name) const;

@@ -42,7 +42,8 @@ TEST(Lms200Machine, FactoryFreshDeviceIsFoundAndSetUp) {
   EXPECT_EQ(f.device.resets, 0);
   const LaserReport report = f.machine.report();
   EXPECT_EQ(report.baud, 500'000U);
-  EXPECT_THAT(report.type, HasSubstr("LMS200"));
+  EXPECT_EQ(report.type, "LMS200;301063;V02.30");
+  EXPECT_EQ(report.software, "V02.30");
   EXPECT_THAT(report.remarks, IsEmpty());
   EXPECT_EQ(report.trouble, "");
 }

@@ -132,9 +132,8 @@ TEST(Replay, DamagedLinesAreSkippedAndCounted) {
   const auto robot = replay("ODOM nan 0 0 0 0 0 1 h 1\nFLASER 4 1 2\n" +
                             scan("1 2 3 4", "0 0 0 0 0 0", "1") + "FLASER 4 x\n");
   EXPECT_EQ(robot->size(), 1u);
-  EXPECT_EQ(robot->skipped().count, 3u);
-  EXPECT_EQ(robot->skipped().first_line, 1u);
-  EXPECT_EQ(robot->skipped().first_reason, "a number of the odometry is missing or not finite");
+  EXPECT_EQ(robot->damage(),
+            "3 unreadable (line 1: a number of the odometry is missing or not finite)");
 }
 
 TEST(Replay, ReportsWhyALogCannotBeReplayed) {

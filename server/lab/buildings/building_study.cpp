@@ -59,10 +59,6 @@ bool as_the_truth_demands(const BuildingRun& run) {
   return !run.truth.has_none || run.end() == End::Refused;
 }
 
-std::string_view way_word(const Truth& truth) {
-  return truth.has_way ? "yes" : (truth.has_none ? "no" : "too close to call");
-}
-
 std::string share(std::size_t part, std::size_t whole) {
   return whole == 0 ? ""
                     : fmt::format("{:.1f}",
@@ -74,6 +70,10 @@ std::string number(double value) {
 }
 
 }  // namespace
+
+std::string_view way_word(const Truth& truth) {
+  return truth.has_way ? "yes" : (truth.has_none ? "no" : "too close to call");
+}
 
 std::vector<std::uint64_t> seeds_of(const Options& options) {
   std::vector<std::uint64_t> seeds;

@@ -41,6 +41,8 @@ enum class End : std::uint8_t {
 };
 /// "out_of_time"
 std::string_view name(End end);
+/// Whether there is a way to the goal, as a word of a table.
+std::string_view way_word(const Truth& truth);
 /// `silent`: it stood without a reason. `state`: of the strip at the end, as its words explain it.
 End end_of(algo::Outcome outcome, bool silent, int state);
 

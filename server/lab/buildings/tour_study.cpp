@@ -65,17 +65,13 @@ std::vector<std::string> cells_of(const TourFigures& f) {
   return cells;
 }
 
-std::string_view truth_word(const Truth& truth) {
-  return truth.has_way ? "yes" : (truth.has_none ? "no" : "too close to call");
-}
-
 std::vector<std::string> cells_of(const Tour& tour, std::size_t i) {
   const Leg& leg = tour.legs[i];
   return {fmt::format("{}", tour.seed),
           std::string(name(tour.building.kind)),
           std::string(name(tour.odometry)),
           std::string(name(leg.goal.place)),
-          std::string(truth_word(leg.goal.truth)),
+          std::string(way_word(leg.goal.truth)),
           std::string(name(leg.end)),
           std::string(name(verdict_of(leg))),
           leg.reason,
@@ -170,9 +166,8 @@ experiment::Table legs_table(const std::vector<Tour>& tours) {
 }
 
 nlohmann::json tours_json(const std::vector<Tour>& tours) {
-  nlohmann::json out = {{"tours", experiment::to_json(tours_table(tours))},
-                        {"faults", experiment::to_json(tour_faults_table(tours))}};
-  return out;
+  return {{"tours", experiment::to_json(tours_table(tours))},
+          {"faults", experiment::to_json(tour_faults_table(tours))}};
 }
 
 }  // namespace server::buildings

@@ -164,11 +164,10 @@ Way way_of(const Recording& recording, std::size_t k) {
   Way way = way_through(recording, k);
   const double span = recording.until - recording.from - kLastBegin;
   if (span < 0) {
-    throw std::runtime_error(
-        fmt::format("{} lasts {:.0f} s; the crossings begin up to {:.0f} s before its end",
-                    recording.name,
-                    recording.until - recording.from,
-                    kLastBegin));
+    throw std::runtime_error(fmt::format("{} lasts {:.0f} s; the crossings need {:.0f} s",
+                                         recording.name,
+                                         recording.until - recording.from,
+                                         kLastBegin));
   }
   way.begin += static_cast<double>(k) * span / (kCrossings - 1);
   return way;

@@ -73,6 +73,7 @@ Recording read_recording(const std::filesystem::path& file) {
   sim::Replay replay(file);
   Recording log;
   log.name = file.stem().string();
+  log.damage = replay.damage();
   algo::Observation observation;
   replay.reset(observation);
   for (std::size_t i = 0; i < replay.size(); ++i) {

@@ -24,6 +24,7 @@ struct Recording {
   std::vector<algo::LaserScan> scans{};
   std::vector<algo::Pose2> path_W{};  // one pose per scan
   std::vector<double> stamps{};       // [s] as recorded, one per scan; 0 where the log has none
+  std::string damage{};               // sim::Replay::damage()
 };
 
 /// Throws std::runtime_error with a sentence if the file does not exist, holds no scan, or has

@@ -69,8 +69,66 @@ TEST_F(CommandFilesTest, AnOutputThatWouldOverwriteAnInputIsRefused) {
   write_text(path("in.json"), "kept");
   EXPECT_THAT(refusal(add_barn_command, {"barn", path("in.json"), "--rows", path("in.json")}),
               shared);
+  for (const char* journal : {"", "-wal"}) {
+    const std::string output = in + journal;
+    EXPECT_THAT(refusal(add_export_command, {"export", "1", "--db", in, "-o", output}), shared);
+  }
+  for (const char* input : {"--log", "--scenario"}) {
+    EXPECT_THAT(refusal(add_emulate_command,
+                        {"emulate", "lms200", "--link", path("port"), input, in, "--record", in}),
+                shared);
+  }
   EXPECT_EQ(read_text(in), "kept");
   EXPECT_EQ(read_text(path("in.json")), "kept");
+}
+
+TEST_F(CommandFilesTest, ALogMayHaveAnyName) {
+  const std::string scan = "FLASER 3 1.0 1.0 1.0 0 0 0 0 0 0 ";
+  write_text(path("lab"), scan + "1.0 lab 1.0\n" + scan + "1.1 lab 1.1\n");
+  const tests::Parsed replay = tests::parsed(add_replay_command, {"replay", path("lab")});
+  EXPECT_EQ(replay.refusal, "");
+  EXPECT_EQ(replay.status, kReached);
+  write_text(path("world.json"), "{}");
+  EXPECT_THAT(refusal(add_replay_command, {"replay", path("world.json")}),
+              HasSubstr("holds no scan"));
+}
+
+TEST_F(CommandFilesTest, LinesOfALogThatAreLeftOutAreSaid) {
+  write_text(path("lab.log"),
+             "FLASER 3 1 1 1 0 0 0 0 0 0 1.0 lab 1.0\nFLASER 3 nan 1 1 0 0 0 0 0 0 1.1 lab 1.1\n");
+  const auto said =
+      HasSubstr(path("lab.log") + " has lines that were left out: 1 unreadable (line 2: ");
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(refusal(add_replay_command, {"replay", path("lab.log")}), "");
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), said);
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(refusal(add_map_command, {"map", path("lab.log")}), "");
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), said);
+}
+
+TEST_F(CommandFilesTest, ARecordingMayBeNamedAsAScenario) {
+  write_text(path("people"), "0 1 0 0\n100 1 5 5\n");
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(std::filesystem::path(path("people")).parent_path());
+  EXPECT_EQ(refusal(add_crowd_command, {"crowd", "people", "--scenario", "crowd.json"}), "");
+  std::filesystem::current_path(before);
+  EXPECT_TRUE(std::filesystem::exists(path("crowd.json")));
+}
+
+TEST_F(CommandFilesTest, AStudyThatCannotWriteItsFilesIsPrintedAllTheSame) {
+  std::filesystem::create_symlink("/dev/full", path("rows.csv"));
+  CLI::App app;
+  int status = -1;
+  add_soak_command(Command(app), status);
+  testing::internal::CaptureStdout();
+  std::string why;
+  try {
+    app.parse("soak --worlds 1 --slopes --seconds 1 --rows " + path("rows.csv"));
+  } catch (const std::runtime_error& e) {
+    why = e.what();
+  }
+  EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("overturned"));
+  EXPECT_EQ(why, path("rows.csv") + ": cannot be written: No space left on device");
 }
 
 TEST_F(CommandFilesTest, AnOptionWithoutEffectIsRefused) {
@@ -85,6 +143,25 @@ TEST_F(CommandFilesTest, AnOptionWithoutEffectIsRefused) {
   EXPECT_THAT(refusal(add_locate_command, {"locate", "x", "--markdown", path("x.md")}),
               AllOf(HasSubstr("--markdown"), HasSubstr("--study")));
   EXPECT_THAT(refusal(add_locate_command, {"locate", "x", "--study"}), HasSubstr("LOG"));
+  const auto soak = [](std::vector<std::string> options) {
+    options.insert(options.begin(), {"soak", "--worlds", "1"});
+    return refusal(add_soak_command, options);
+  };
+  EXPECT_THAT(soak({"--slopes", "--controller", "dwa"}), HasSubstr("--controller"));
+  EXPECT_THAT(soak({"--courses", "--list"}), HasSubstr("--list"));
+  EXPECT_THAT(soak({"--physics", "kinematic"}), HasSubstr("--operator"));
+  EXPECT_THAT(soak({"--robot", "jackal"}), HasSubstr("--operator"));
+  EXPECT_THAT(soak({"--seconds", "5"}), HasSubstr("--operator"));
+  EXPECT_THAT(soak({"--scenario", path("s.json"), "--rows", path("r.csv")}), HasSubstr("--rows"));
+  EXPECT_THAT(
+      refusal(add_barn_command, {"barn", "x", "--scenarios", path("s"), "--rows", path("r.csv")}),
+      HasSubstr("--rows"));
+  EXPECT_THAT(
+      refusal(add_buildings_command, {"buildings", "--tour", "3", "--scenario", path("s.json")}),
+      HasSubstr("--tour"));
+  EXPECT_THAT(refusal(add_reproduce_command,
+                      {"reproduce", "--arm", "--reaches", "1", "--markdown", path("x.md")}),
+              HasSubstr("--markdown"));
 }
 
 TEST_F(CommandFilesTest, ASeedThatTheStoreCannotKeepIsRefused) {

@@ -2,18 +2,24 @@
 // a line of a log.
 #include "server/cli/doctor.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
 #include <sstream>
+#include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "tests/server/cli/parsed.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "server/cli/carmen_line.hpp"
+#include "server/cli/cli.hpp"
 #include "server/cli/doctor_floor.hpp"
 #include "server/emulate/emulation.hpp"
 #include "sim/replay.hpp"
@@ -44,7 +50,7 @@ track = 0.33
   ASSERT_EQ(bad.size(), 2U);
   EXPECT_THAT(bad[0].sentence, HasSubstr("/dev/no_such_laser"));
   EXPECT_EQ(bad[1].device, "base");
-  for (const Finding& f : bad) EXPECT_NE(f.advice, "");
+  for (const Finding& f : bad) EXPECT_THAT(f.advice, HasSubstr("fuser /dev/no_such_"));
 }
 
 /// The findings about an emulated scanner after `command`; expects a bad one.
@@ -76,6 +82,47 @@ std::string bad_words_after(const std::string& command) {
 TEST(Doctor, ADazzledScannerIsAlwaysBad) {
   EXPECT_THAT(bad_words_after("dazzle on"), HasSubstr("It is blinded"));
   EXPECT_THAT(bad_words_after("cone 20"), HasSubstr("It is dazzled"));
+}
+
+TEST(Doctor, AnInterruptionStopsTheWheels) {
+  namespace fs = std::filesystem;
+  const fs::path folder =
+      fs::temp_directory_path() / ("tautline_doctor_move_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  emulate::EmulationOptions options;
+  options.base = emulate::BaseKind::P2os;
+  options.base_link = folder / "base";
+  emulate::Emulation emulation(options);
+  emulation.start();
+  const auto x = [&] {
+    return nlohmann::json::parse(emulation.command("truth"))["pose"][0].get<double>();
+  };
+  const drivers::RobotFile file = drivers::parse_robot(
+      "name = \"a\"\nhull = { radius = 0.3 }\n[base]\ntype = \"pioneer\"\ntrack = 0.33\nport = \"" +
+          options.base_link.string() + "\"\n",
+      "a.toml");
+  const DoctorOptions interrupted{.move = true, .interrupted = [&] { return x() > 0.01; }};
+  EXPECT_THROW(examine(file, interrupted, [](const Finding&) {}), std::runtime_error);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const double stopped = x();
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_NEAR(x(), stopped, 1e-3);
+  fs::remove_all(folder);
+}
+
+TEST(Lms200Log, AFullDiskIsSaid) {
+  namespace fs = std::filesystem;
+  const fs::path link =
+      fs::temp_directory_path() / ("tautline_lms200_log_" + std::to_string(::getpid()));
+  emulate::EmulationOptions options;
+  options.scanner_links = {link};
+  emulate::Emulation emulation(options);
+  emulation.start();
+  testing::internal::CaptureStderr();
+  const tests::Parsed log = tests::parsed(
+      add_lms200_command, {"lms200", "log", link.string(), "--out", "/dev/full", "--scans", "1"});
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("is the disk full?"));
+  EXPECT_EQ(log.status, kNotWell);
 }
 
 /// The findings about emulated floor sensors after `command`.

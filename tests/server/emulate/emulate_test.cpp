@@ -364,5 +364,14 @@ TEST_F(EmulationTest, InvalidCommandsAreRefusedWithASentence) {
   EXPECT_EQ(said("# a remark"), "");
 }
 
+TEST(TruthRecord, AFullDiskIsSaidOnce) {
+  testing::internal::CaptureStderr();
+  TruthRecord record("/dev/full");
+  record.event(1, "silence 2");
+  record.event(2, "silence 2");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "tautline: The record is incomplete: is the disk full?\n");
+}
+
 }  // namespace
 }  // namespace server::emulate

@@ -97,5 +97,17 @@ TEST(Worlds, RefuseAnActionThatIsNoNumber) {
       ThrowsMessage<std::runtime_error>(HasSubstr("World 0: an action is not a finite number.")));
 }
 
+TEST(Worlds, RefusesASeedThatIsNone) {
+  Worlds worlds(case1(), 1);
+  const auto begun_with = [&](double seed) {
+    const std::vector<WorldAction> action{{.seed = seed}};
+    return [&worlds, action] { worlds.step(action); };
+  };
+  EXPECT_THAT(begun_with(1e300),
+              ThrowsMessage<std::runtime_error>(HasSubstr("World 0: a seed is beyond 2^53 - 1")));
+  EXPECT_THAT(begun_with(std::numeric_limits<double>::quiet_NaN()),
+              ThrowsMessage<std::runtime_error>(HasSubstr("not a finite number")));
+}
+
 }  // namespace
 }  // namespace server::experiment

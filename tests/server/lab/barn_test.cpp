@@ -2,6 +2,7 @@
 #include <fstream>
 #include <string>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "algo/driving.hpp"
@@ -75,6 +76,12 @@ TEST(BarnFile, NamesTheErrorAndItsPlace) {
   EXPECT_NE(complaint(json::object()), "");
   EXPECT_NE(complaint({{"worlds", json::array()}}), "");
   EXPECT_THROW(read_worlds("/nowhere/worlds.json"), std::runtime_error);
+  try {
+    read_worlds("/dev/null");
+    ADD_FAILURE() << "an empty file is no JSON";
+  } catch (const std::runtime_error& e) {
+    EXPECT_THAT(e.what(), ::testing::HasSubstr("/dev/null: bad JSON at line 1, column 1"));
+  }
 }
 
 TEST(BarnFile, WorldsAreChosenByNumberAndOneThatIsNotThereIsNamed) {

@@ -48,7 +48,12 @@ TEST(CrowdCrossing, ASceneThatIsTooSmallOrTooShortIsRefused) {
   std::istringstream small("0 a 0 0\n2500 a 1 1\n");
   EXPECT_THROW(way_of(read_people(small, "small"), 0), std::runtime_error);
   std::istringstream brief("0 a 0 0\n25 a 9 9\n");
-  EXPECT_THROW(way_of(read_people(brief, "brief"), 0), std::runtime_error);
+  try {
+    way_of(read_people(brief, "brief"), 0);
+    ADD_FAILURE() << "the crossings have no time";
+  } catch (const std::runtime_error& e) {
+    EXPECT_STREQ(e.what(), "brief lasts 1 s; the crossings need 60 s");
+  }
 }
 
 TEST(CrowdCrossing, WithoutPeopleInTheWayItIsThatOfTheRobotAlone) {
