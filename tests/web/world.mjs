@@ -326,6 +326,33 @@ test("waypoints are reordered and looped in the list, and sizes are typed", { ti
   await p.close();
 });
 
+test("what one person saves and imports does not replace another's worlds", { timeout: 120_000 }, async () => {
+  const a = await fresh();
+  const b = await open(browser, server.base);
+  const title = async (name) => (await json(server.base, `/scenarios/${name}`)).title;
+  const world = (title) => ({ name: "mine.json", mimeType: "application/json", buffer: Buffer.from(JSON.stringify({ name: "mine", title, goal: { x: 3, y: 0 } })) });
+  for (const p of [a, b]) await p.get("tab-world").click();
+  await a.get("world-files").setInputFiles([world("Of Ann")]);
+  await until("Ann's import", 10, session, (s) => s.scenario.name === "mine");
+  await b.get("world-files").setInputFiles([world("Of Bob")]);
+  await until("Bob's import has another name", 10, session, (s) => s.scenario.name === "mine_2");
+  assert.equal(await title("mine"), "Of Ann");
+
+  await until("both pages have Bob's world", 10, () => a.get("world-name").inputValue(), (name) => /of bob/i.test(name));
+  await a.get("world-name").fill("Lab");
+  await a.get("world-save").click();
+  await until("Ann's world is saved", 10, session, (s) => s.scenario.name === "lab");
+  await b.get("world-new").click();
+  await until("a new one", 10, session, (s) => s.scenario.name !== "lab");
+  await b.get("world-name").fill("Lab");
+  await b.get("world-save").click();
+  await b.get("replace-dialog").waitFor();
+  await b.get("replace-yes").click();
+  await until("Bob's world is saved", 10, session, (s) => s.scenario.name === "lab");
+  await a.close();
+  await b.close();
+});
+
 test("worlds are imported and exported, copied, deleted and brought back; bad files say why", { timeout: 120_000 }, async () => {
   const p = await fresh({ size: desktop, theme: "light" });
   await p.get("tab-world").click();

@@ -22,6 +22,7 @@ export async function import_files(app: App, files: FileList): Promise<ScenarioD
 
 /** Keeps `world` under a name that is not taken, so that an import replaces nothing, and opens it. */
 export async function open_world(app: App, world: ScenarioDocument): Promise<void> {
+  await app.fetch_lists(); // others save worlds too
   const name = free_name(app, world.name);
   const saved = await app.attempt(rest.put(`/scenarios/${name}`, { ...world, name }));
   if (saved === null) return;
