@@ -141,6 +141,17 @@ test("two fingers pan and zoom, and the first one draws nothing", () => {
   assert.ok(Math.abs(view.scale - 200) < 1e-6, `scale ${view.scale}`);
 });
 
+test("a second finger puts a dragged obstacle back", () => {
+  const { done, gestures } = hands("goal");
+  gestures.down(1, { x: 600, y: 200 }, 0);
+  gestures.move(1, { x: 700, y: 200 });
+  gestures.down(2, { x: 300, y: 300 }, 0);
+  gestures.move(1, { x: 750, y: 200 });
+  gestures.up(1, { x: 750, y: 200 });
+  gestures.up(2, { x: 300, y: 300 });
+  assert.deepEqual(done, ["select obstacle", "moving 4 3 1", "moved 4 2 1"]);
+});
+
 test("zooming keeps the point under the cursor", () => {
   const { view } = hands("goal");
   const before = view.to_world(650, 120);

@@ -280,6 +280,21 @@ test("a refused drag goes back; one person's undo leaves what another has change
   const robot = (await session()).pose;
   await a.drag(await a.pixels(3, 1), await a.pixels(robot.x, robot.y));
   await until("back", 5, obstacles, ([o]) => near(o.x, 3, 0.15));
+  // Escape puts it back in the midst of a drag. There is nothing to undo about that.
+  const last = await a.get("undo").getAttribute("title");
+  const [here, there] = [await a.pixels(3, 1), await a.pixels(4, 2)];
+  await a.page.mouse.move(here.x, here.y);
+  await a.page.mouse.down();
+  await a.page.mouse.move(there.x, there.y);
+  await until("on its way", 5, obstacles, ([o]) => o.y > 1.5);
+  await a.page.keyboard.press("Escape");
+  await a.page.mouse.up();
+  await until("put back", 5, obstacles, ([o]) => near(o.x, 3, 0.15) && near(o.y, 1, 0.15));
+  await a.page.keyboard.press("Control+z");
+  await until("the drag before it is undone", 5, obstacles, ([o]) => near(o.x, 2, 0.15));
+  await a.page.keyboard.press("Control+Shift+z");
+  await until("and done again", 5, obstacles, ([o]) => near(o.x, 3, 0.15));
+  assert.equal(await a.get("undo").getAttribute("title"), last);
   await json(server.base, "/session/obstacles/1", { method: "PUT", body: '{"x":4,"y":-2}' });
   await a.page.waitForTimeout(300);
   await a.get("undo").click();

@@ -121,7 +121,7 @@ export class Editor {
       .finally(() => (drag.busy = false));
   }
 
-  /** A refused end goes back to where the drag began. */
+  /** A refused end goes back to where the drag began. One that is put back there needs no undo. */
   private finish_drag(id: number, pose: Pose, from: Pose): Promise<void> {
     return this.history.take(async () => {
       const o = this.app_.scene.obstacles.find((o) => o.id === id);
