@@ -1,7 +1,7 @@
 // web/src/app.ts: the state of the page and its actions: one link, one scene, the controls.
 import { createContext } from "preact";
 import { useContext } from "preact/hooks";
-import { Catalog, MapDocument, Page, RequestJson, RobotItem, ScenarioItem, SessionState } from "./contract";
+import { Accepted, Catalog, MapDocument, Page, RequestJson, RobotItem, ScenarioItem, SessionState } from "./contract";
 import type { ArmDesk } from "./arm/desk";
 import { View } from "./draw/view";
 import { Editor } from "./edit/editor";
@@ -192,7 +192,7 @@ export class App {
     return this.attempt(this.link.call<T>(service, body));
   }
 
-  request(request: RequestJson): Promise<unknown> {
+  request(request: RequestJson): Promise<Accepted | null> {
     return this.ask("/request", request);
   }
 

@@ -79,5 +79,19 @@ TEST_F(MapTest, AResetKeepsTheMapAndAnotherWorldHasNone) {
   EXPECT_THAT(refused.body, testing::HasSubstr("knows no map"));
 }
 
+TEST_F(MapTest, APoseOffTheMapGetsAWarning) {
+  const auto warning = [&](const char* pose) {
+    const auto answer = ask("PUT", "/session/pose", pose);
+    EXPECT_EQ(answer.status, 200) << answer.body;
+    return json::parse(answer.body).value("warning", "");
+  };
+  EXPECT_EQ(warning(R"({"x":500,"y":2,"heading":0})"),
+            "The map shows nothing within 2 m of this pose: give one on the map.");
+  EXPECT_EQ(warning(R"({"x":2,"y":-3,"heading":0})"),
+            "The map shows nothing within 2 m of this pose: give one on the map.");
+  EXPECT_EQ(warning(R"({"x":2,"y":-1,"heading":0})"), "");
+  EXPECT_EQ(warning(R"({"x":2,"y":2,"heading":0})"), "");
+}
+
 }  // namespace
 }  // namespace server
