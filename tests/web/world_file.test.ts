@@ -47,6 +47,10 @@ test("a map that cannot be used says which field is wrong", () => {
   assert.throws(() => read_map_info("resolution: 0.05", "m.yaml"), /origin is missing/);
   assert.throws(() => read_map_info("resolution: 0.05\norigin: [0, 0, 1]", "m.yaml"), /turned/);
   assert.throws(() => read_worlds([file("m.pgm", "P5")]), /two files/);
+  const yaml = file("m.yaml", kYaml.replace("a.pgm", "maps/a.pgm"));
+  const picture = "P2\n4 4\n255\n0 0 0 0 254 254 254 254 254 254 254 254 254 254 254 254\n";
+  assert.throws(() => read_worlds([file("b.pgm", picture), yaml]), /^Error: m.yaml: its image is a.pgm, not b.pgm.$/);
+  assert.equal(read_worlds([file("b.pgm", "P5"), file("a.pgm", picture), yaml])[0].name, "a", "of two pictures it takes its own");
 });
 
 test("a file that holds something else says so, in words", () => {

@@ -14,11 +14,14 @@ export function name_of(title: string): string {
 /** The worlds in `files`; throws a sentence that names the file and the field. */
 export function read_worlds(files: GivenFile[]): ScenarioDocument[] {
   const of = (ends: RegExp) => files.find((f) => ends.test(f.name));
-  const picture = of(/\.pgm$/i);
+  const pgm = of(/\.pgm$/i);
   const yaml = of(/\.ya?ml$/i);
-  if (picture || yaml) {
-    if (!picture || !yaml) throw new Error("A map is two files: choose the .pgm and the .yaml together.");
+  if (pgm || yaml) {
+    if (!pgm || !yaml) throw new Error("A map is two files: choose the .pgm and the .yaml together.");
     const info = read_map_info(text_of(yaml), yaml.name);
+    const image = info.image.replace(/^.*[\\/]/, "");
+    const picture = files.find((f) => f.name === image);
+    if (!picture) throw new Error(`${yaml.name}: its image is ${image}, not ${pgm.name}.`);
     return [world_of_map(read_pgm(picture.bytes, picture.name), info, stem(picture.name))];
   }
   const json = of(/\.json$/i);
