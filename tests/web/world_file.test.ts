@@ -57,6 +57,7 @@ test("a file that holds something else says so, in words", () => {
   const read = (text: string) => () => read_worlds([file("a.json", text)]);
   for (const text of ["[]", "[7]", "null", "7"]) assert.throws(read(text), /^Error: a.json holds no world/, text);
   for (const name of ["42", "null", "{}"]) assert.throws(read(`{"name":${name}}`), /a.json: name must be a text/, name);
+  assert.throws(read('{"name":"carrier","hull":{"radius":0.3}}'), /^Error: a.json is a robot, not a world. Put it into the folder/);
   const barn = '{"start":[0,0,0],"goal":[1,1],"obstacles":[]}';
   assert.deepEqual(read_worlds([file("b.json", `{"worlds":[${barn},${barn}]}`)]).map((w) => w.name), ["barn-1", "barn-2"]);
 });

@@ -34,6 +34,7 @@ export function read_worlds(files: GivenFile[]): ScenarioDocument[] {
   }
   if (!document || typeof document !== "object" || Array.isArray(document)) throw new Error(`${json.name} holds no world.`);
   if ("worlds" in document) return barn_worlds(document as BarnFile, json.name);
+  if ("hull" in document) throw new Error(`${json.name} is a robot, not a world. Put it into the folder of serve --robots, then reload the page.`);
   const one = document as ScenarioDocument;
   if (one.name !== undefined && typeof one.name !== "string") throw new Error(`${json.name}: name must be a text.`);
   return [{ ...one, name: name_of(one.name ?? stem(json.name)) || "world" }];
