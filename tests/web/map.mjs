@@ -154,3 +154,28 @@ test("a pose off the map is told; a run on the served map is driven again; a run
   await until("the room and its map are back", 20, session, (s) => s.scenario.name === "room" && s.map === "room.yaml");
   await p.close();
 });
+
+test("a map that comes late is not drawn in the world that was loaded meanwhile", { timeout: 120_000 }, async () => {
+  const p = await open(browser, server.base);
+  if ((await p.get("layers").getAttribute("aria-expanded")) !== "true") await p.get("layers").click();
+  const layer = p.page.getByRole("switch", { name: "Known map" }).or(p.page.getByLabel("Known map")).first();
+  await layer.waitFor();
+  let asked = 0, sent = 0;
+  await p.page.route("**/session/map", async (route) => {
+    ++asked;
+    const response = await route.fetch();
+    await p.page.waitForTimeout(4000);
+    await route.fulfill({ response });
+    ++sent;
+  });
+  await reset();
+  await until("the map of the new run is asked for", 10, () => asked);
+  await p.load("case1");
+  await layer.waitFor({ state: "detached" });
+  await until("it comes", 10, () => sent);
+  await p.page.waitForTimeout(500);
+  assert.equal(await layer.count(), 0);
+  await p.page.keyboard.press("Control+z");
+  await layer.waitFor();
+  await p.close();
+});

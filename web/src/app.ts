@@ -349,10 +349,10 @@ export class App {
 
   private async fetch_map(name: string | null | undefined): Promise<void> {
     if (!name && !this.scene.map) return;
-    const { bounds_of, show_map } = await import("./draw/known_map");
+    const { show_map } = await import("./draw/known_map");
     const map = name ? await this.attempt(rest.get<MapDocument>(session_path("/map"))) : null;
-    show_map(map);
-    this.scene.map = map && bounds_of(map);
+    if (name !== this.ui.value.session?.map) return; // another world has been loaded meanwhile
+    this.scene.map = show_map(map);
     if (this.view.fitted) this.view.fit();
     this.redraw();
   }
