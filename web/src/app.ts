@@ -332,6 +332,8 @@ export class App {
       const camera = cameras.get(session.scenario.name);
       if (camera) this.view.show(camera);
       else this.view.fit();
+      const known = this.ui.value.scenarios.some((s) => s.name === session.scenario.name);
+      if (before && !known) void this.fetch_lists(); // somebody else has just saved it
     }
     if (other_run) {
       this.rewind.forget();
