@@ -2,7 +2,7 @@
 // that was built is lost.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { readFileSync, writeFileSync } from "node:fs";
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { desktop, launch, open, phone } from "./page.mjs";
@@ -12,9 +12,11 @@ let browser;
 let server;
 let store;
 
+const robots = () => join(store.folder, "robots"); // people's own
 before(async () => {
   store = scratch();
-  server = await serve({ database: store.database, scenario: "case1", more: ["--scenarios", join(store.folder, "worlds")] });
+  mkdirSync(robots());
+  server = await serve({ database: store.database, scenario: "case1", more: ["--scenarios", join(store.folder, "worlds"), "--robots", robots()] });
   browser = await launch();
 });
 after(async () => {
@@ -264,6 +266,22 @@ test("another controller, filter, robot and physics keep the world; a reset is t
   assert.equal(reset.goal.x, 4);
   await p.get("undo").click();
   await until("where it was", 10, session, (s) => s.pose && s.pose.x >= far.pose.x - 0.1);
+  await p.close();
+});
+
+test("one's own robot is chosen; once its file is broken, the reason stands there once, and the robot drives on", { timeout: 120_000 }, async () => {
+  const file = join(robots(), "carrier.json");
+  writeFileSync(file, JSON.stringify({ name: "carrier", title: "Carrier", hull: { length: 0.8, width: 0.6 }, mass: 80, track: 0.5, wheel_radius: 0.1, limits: { speed: 0.8, turn: 1.2 }, lasers: [{ resolution_deg: 0.5 }] }));
+  const p = await fresh();
+  await p.get("robot").selectOption("carrier");
+  await until("the carrier", 10, session, (s) => s.robot.name === "carrier");
+  writeFileSync(file, "{ broken");
+  await p.page.reload();
+  await p.page.getByText(/^carrier\.json: bad JSON/).first().waitFor();
+  assert.equal(await p.page.getByText(/^carrier\.json: bad JSON/).count(), 1);
+  await p.get("controller").selectOption("dwa");
+  await until("its world with another controller", 10, session, (s) => s.controller === "dwa" && s.robot.name === "carrier");
+  rmSync(file);
   await p.close();
 });
 
