@@ -322,6 +322,14 @@ test("a removed obstacle comes back with its number, so that older edits reach i
   assert.equal(history.can_redo, null);
 });
 
+test("a load without a way back ends the undo of what was before", async () => {
+  const history = new EditHistory({ send: async () => ({ ok: true, id: 1 }), stands: async () => null, changed: () => undefined });
+  await history.perform(add_edit(new_cylinder(1, 1, 0.3)));
+  assert.ok(history.can_undo);
+  await history.perform({ label: "Change the run", forward: { type: "load", body: {} }, backward: null });
+  assert.equal(history.can_undo, null);
+});
+
 test("undo and redo pressed faster than the server answers run in order", async () => {
   const { standing, history } = world();
   const presses = [history.perform(add_edit(new_cylinder(1, 0, 0.3))), history.undo(), history.redo(), history.undo(),

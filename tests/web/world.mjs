@@ -517,6 +517,36 @@ test("recorded people are dropped onto the page, walk at their times and are gon
   assert.match(execFileSync(binary, ["run", made, "--seed", "1"], { encoding: "utf8" }), /outcome +reached/);
 });
 
+test("a crowd of 5 MB is driven among from the folder of worlds; too large to be sent, it is refused in words", { timeout: 180_000 }, async () => {
+  const p = await fresh();
+  await p.get("tab-world").click();
+  const lines = Array.from({ length: 60_000 }, (_, i) => `${Math.floor(i / 60)} ${i % 60} ${(i % 97) / 7} ${(i % 89) / 9}`);
+  await p.get("world-files").setInputFiles([{ name: "large.txt", mimeType: "text/plain", buffer: Buffer.from(lines.join("\n")) }]);
+  await p.page.getByText(/^"People of large" is a world of [\d.]+ MB; the page can send 1 MB/).waitFor();
+
+  const walker = (i) => ({
+    id: i, type: "cylinder", x: 20, y: i, radius: 0.25,
+    path: { period: 2000, comes_and_goes: true, keys: Array.from({ length: 1000 }, (_, k) => [k + 0.125, 20.125 + k / 1000, i + 0.125]) },
+  });
+  const crowd = { name: "crowd", title: "Crowd", goal: { x: 5, y: 0 }, obstacles: Array.from({ length: 200 }, (_, i) => walker(i + 1)) };
+  const text = JSON.stringify(crowd);
+  assert.ok(text.length > 4.2e6, `${text.length} bytes`);
+  mkdirSync(join(store.folder, "worlds"), { recursive: true });
+  writeFileSync(join(store.folder, "worlds/crowd.json"), text);
+  await control({ action: "load", scenario: "crowd" });
+  await until("the page is in it", 20, () => p.get("scenario-menu").getAttribute("data-scenario"), (name) => name === "crowd");
+  const [file] = await Promise.all([p.page.waitForEvent("download"), p.get("world-export").selectOption("json")]);
+  assert.equal(JSON.parse(readFileSync(await file.path())).obstacles.length, 200);
+  await p.get("tab-robot").click();
+  await p.get("controller").selectOption("dwa");
+  await until("the controller", 20, session, (s) => s.controller === "dwa" && s.scenario.name === "crowd");
+  await p.get("reset").click();
+  await until("a new run", 20, session, (s) => s.tick < 100);
+  assert.equal(await p.get("link").getAttribute("class").then((c) => /open/.test(c)), true);
+  assert.ok(await p.get("undo").isDisabled(), "the way back would be too large");
+  await p.close();
+});
+
 test("people on a phone come by the dialog", { timeout: 120_000 }, async () => {
   const p = await fresh({ size: phone, touch: true, theme: "light" });
   const file = join(store.folder, "square.txt");

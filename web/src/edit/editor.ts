@@ -3,6 +3,8 @@ import type { App } from "../app";
 import { Accepted, RequestJson, ScenarioDocument } from "../contract";
 import { Point, Pose } from "../geometry";
 import { Goal } from "../link/frame";
+import * as rest from "../link/rest";
+import { session_path } from "../link/session";
 import { Obstacle } from "../obstacle";
 import { kCompareStep, kGoalStep, kObstacleStep } from "../state/first_steps";
 import { Route } from "../state/goals";
@@ -166,7 +168,7 @@ export class Editor {
     if (!s || s.source !== "simulation") return null;
     const begin = robot_pose(this.app_.scene);
     try {
-      const { scenario } = await this.app_.link.call<{ scenario: ScenarioDocument }>("/world");
+      const scenario = await rest.get<ScenarioDocument>(session_path("/scenario")); // no size that cuts the link
       const body = { scenario, seed: s.seed, ...(begin && { begin }) };
       return JSON.stringify(body).length < kMostBytes ? { type: "load", body } : null;
     } catch {

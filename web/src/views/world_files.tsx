@@ -142,8 +142,8 @@ function Export(): JSX.Element {
   const { session } = use_ui("session");
   const name = session!.scenario.name;
   const scenario = async () => {
-    const answer = await app.attempt(app.link.call<{ scenario: ScenarioDocument }>("/world"));
-    if (answer) download(new Blob([JSON.stringify(answer.scenario, null, 2), "\n"]), `${name}.json`);
+    const world = await app.attempt(rest.get<ScenarioDocument>(session_path("/scenario")));
+    if (world) download(new Blob([JSON.stringify(world, null, 2), "\n"]), `${name}.json`);
   };
   const map = () => {
     try {
