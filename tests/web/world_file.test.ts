@@ -60,6 +60,7 @@ test("a file that holds something else says so, in words", () => {
   assert.throws(read('{"name":"carrier","hull":{"radius":0.3}}'), /^Error: a.json is a robot, not a world. Put it into the folder/);
   const barn = '{"start":[0,0,0],"goal":[1,1],"obstacles":[]}';
   assert.deepEqual(read_worlds([file("b.json", `{"worlds":[${barn},${barn}]}`)]).map((w) => w.name), ["barn-1", "barn-2"]);
+  assert.deepEqual(read_worlds([file("a.json", "{}"), file("b.json", "{}")]).map((w) => w.name), ["a", "b"], "each of several files");
 });
 
 test("a world drawn as a map and read back stands where it stood", () => {

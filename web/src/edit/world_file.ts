@@ -24,8 +24,12 @@ export function read_worlds(files: GivenFile[]): ScenarioDocument[] {
     if (!picture) throw new Error(`${yaml.name}: its image is ${image}, not ${pgm.name}.`);
     return [world_of_map(read_pgm(picture.bytes, picture.name), info, stem(picture.name))];
   }
-  const json = of(/\.json$/i);
-  if (!json) throw new Error("Choose a scenario or BARN file (.json), a map (.pgm and .yaml), or one file of recorded people (.txt).");
+  const json = files.filter((f) => /\.json$/i.test(f.name));
+  if (json.length === 0) throw new Error("Choose a scenario or BARN file (.json), a map (.pgm and .yaml), or one file of recorded people (.txt).");
+  return json.flatMap(worlds_in);
+}
+
+function worlds_in(json: GivenFile): ScenarioDocument[] {
   let document: unknown;
   try {
     document = JSON.parse(text_of(json));
