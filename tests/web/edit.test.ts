@@ -413,6 +413,14 @@ test("changes by others are told apart from our own edits", () => {
   assert.equal(change_since(moved, scene), null);
   scene.obstacles = [{ ...ours, pose: { x: 5, y: 0, heading: 0 } }];
   assert.match(change_since(moved, scene)!, /Cylinder 3 has been moved since/);
+  const box = { ...new_box(1, 0, 0.6, 0.4, 0), id: 4 };
+  const { forward } = move_edit(box, box.pose, { x: 2, y: 0, heading: -Math.PI });
+  scene.obstacles = [{ ...box, pose: { x: 2, y: 0, heading: Math.PI } }];
+  assert.equal(change_since(forward, scene), null);
+  scene.obstacles = [{ ...box, pose: { x: 2, y: 0, heading: 1 } }];
+  assert.match(change_since(forward, scene)!, /Box 4 has been moved since/, "turned");
+  const added: Step = { type: "add_obstacle", obstacle: { ...obstacle_to_json({ ...box, pose: { x: 2, y: 0, heading: 0 } }), id: 4 } };
+  assert.match(change_since(added, scene)!, /Box 4 has been changed since/, "turned");
   scene.obstacles = [];
   assert.match(change_since(moved, scene)!, /removed since/);
   const list = { goals: [{ x: 1, y: 2, heading: null }], next: 0, loop: false };
