@@ -49,8 +49,11 @@ sim::Scenario with_map_in(const fs::path& folder, sim::Scenario scenario) {
 
 }  // namespace
 
-ScenarioLibrary::ScenarioLibrary(fs::path own, fs::path logs, RobotLibrary robots)
-    : own_(std::move(own)), logs_(std::move(logs)), robots_(std::move(robots)) {}
+ScenarioLibrary::ScenarioLibrary(fs::path own, fs::path logs, RobotLibrary robots, fs::path map)
+    : own_(std::move(own)),
+      logs_(std::move(logs)),
+      robots_(std::move(robots)),
+      map_(std::move(map)) {}
 
 std::vector<ScenarioEntry> ScenarioLibrary::list() const {
   net::not_on_io_thread("Listing scenarios");
@@ -103,6 +106,9 @@ sim::Scenario ScenarioLibrary::load(const std::string& name) const {
 }
 
 sim::Scenario ScenarioLibrary::placed(sim::Scenario scenario) const {
+  std::error_code error;
+  const bool names_it = !map_.empty() && scenario.map == map_.filename();
+  if (names_it && !fs::exists(own_ / scenario.map, error)) scenario.map = map_.string();
   return with_map_in(own_, std::move(scenario));
 }
 

@@ -25,10 +25,12 @@ struct ScenarioEntry {
 class ScenarioLibrary {
  public:
   /// `own`: folder for the user's *.json files, created on the first save; `logs`: folder of CARMEN
-  /// *.log files. Either may be empty: none.
+  /// *.log files. Either may be empty: none. `map`: a file that scenarios may name besides those in
+  /// `own`; empty: none.
   ScenarioLibrary(std::filesystem::path own,
                   std::filesystem::path logs,
-                  RobotLibrary robots = RobotLibrary());
+                  RobotLibrary robots = RobotLibrary(),
+                  std::filesystem::path map = {});
 
   /// The robots that the scenarios may name.
   const RobotLibrary& robots() const { return robots_; }
@@ -38,7 +40,7 @@ class ScenarioLibrary {
   bool has(const std::string& name) const;
   /// Throws LibraryError, or DocumentError when the file is invalid.
   sim::Scenario load(const std::string& name) const;
-  /// `scenario` from the network, with its map in the user's folder if it names one.
+  /// `scenario` from the network, with the folder of its map if it names one.
   sim::Scenario placed(sim::Scenario scenario) const;
   /// Writes to the user's folder, with a copy of the map beside it if that lies elsewhere. Returns
   /// the scenario as written. Throws LibraryError on a built-in name or an unwritable folder.
@@ -58,6 +60,7 @@ class ScenarioLibrary {
   std::filesystem::path own_;
   std::filesystem::path logs_;
   RobotLibrary robots_;
+  std::filesystem::path map_;
 };
 
 }  // namespace server

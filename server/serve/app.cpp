@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "server/record/run_json.hpp"
+#include "server/run/map_robot.hpp"
 #include "server/serve/api/api.hpp"
 
 namespace server {
@@ -44,7 +45,10 @@ RecorderOptions recorder_options_for(const AppOptions& options) {
 struct App::Impl {
   explicit Impl(AppOptions options)
       : recorder(prepared(options.database), recorder_options_for(options)),
-        library(options.scenarios, options.logs, RobotLibrary(options.robots)),
+        library(options.scenarios,
+                options.logs,
+                RobotLibrary(options.robots),
+                options.first.map ? options.first.map->path : std::string{}),
         scheduler(options.threads),
         workers(options.database.string()),
         checker(options.database.string(), 1),

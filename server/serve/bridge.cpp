@@ -13,7 +13,6 @@
 #include "server/run/json_reader.hpp"
 #include "server/run/paths.hpp"
 #include "server/run/request_json.hpp"
-#include "server/run/scenario_json.hpp"
 #include "server/serve/layers_json.hpp"
 #include "server/serve/operator_watch.hpp"
 #include "server/serve/scene_json.hpp"
@@ -249,13 +248,6 @@ void Bridge::add_services() {
     heed_pace();
     pause(session_, true, who);
   });
-  hub_.add_service(
-      "/world",
-      [this](ClientId, const json& body, const ServiceReply& reply) {
-        JsonReader(body, "").only({});
-        reply.success({{"ok", true}, {"scenario", to_json(session_.as_scenario())}});
-      },
-      net::Role::Viewer);
   add("/start", {"x", "y", "heading"}, [this](const json& body, const std::string&) {
     if (const auto refusal = set_start(session_, body)) throw std::runtime_error(*refusal);
   });

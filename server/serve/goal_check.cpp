@@ -163,4 +163,17 @@ std::optional<std::string> goal_trouble(const algo::RobotSpec& spec,
   return std::nullopt;
 }
 
+std::optional<std::string> pose_trouble(const algo::DrawnSpace& map, const algo::Pose2& pose_M) {
+  constexpr double kAbout = 2;  // [m] of a given pose, within which a robot looks for itself
+  const auto cell = [](double metres) {
+    return algo::whole_below(metres / algo::DrawnSpace::kCell);
+  };
+  for (int row = cell(pose_M.y - kAbout); row <= cell(pose_M.y + kAbout); ++row) {
+    for (int column = cell(pose_M.x - kAbout); column <= cell(pose_M.x + kAbout); ++column) {
+      if (map.clearance(column, row) != algo::DrawnSpace::kUnknown) return std::nullopt;
+    }
+  }
+  return "The map shows nothing within 2 m of this pose: give one on the map.";
+}
+
 }  // namespace server

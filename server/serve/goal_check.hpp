@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "algo/drawn_space.hpp"
 #include "algo/obstacle.hpp"
 #include "algo/request.hpp"
 #include "algo/robot.hpp"
@@ -27,5 +28,8 @@ std::optional<std::string> goal_trouble(const algo::RobotSpec& spec,
                                         const algo::SetGoal& goal,
                                         const algo::Pose2& pose_W,
                                         const algo::LaserScan& seen);
+
+/// A sentence if the map shows nothing where a robot looks for itself about `pose_M`.
+std::optional<std::string> pose_trouble(const algo::DrawnSpace& map, const algo::Pose2& pose_M);
 
 }  // namespace server

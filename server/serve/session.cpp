@@ -9,6 +9,7 @@
 
 #include "server/record/run_json.hpp"
 #include "server/run/hardware.hpp"
+#include "server/run/map_robot.hpp"
 #include "server/run/request_json.hpp"
 #include "server/run/scenario_json.hpp"
 #include "server/serve/goal_check.hpp"
@@ -432,6 +433,10 @@ void Session::watch_run() {
 
 std::optional<std::string> Session::trouble_with(const algo::Request& request) {
   constexpr int kShare = 10;  // goal checks take a tenth of this thread's time
+  if (const auto* given = std::get_if<algo::SetInitialPose>(&request)) {
+    const bool drawn = given->pose_W && state_.spec.map && state_.spec.map->space;
+    return drawn ? pose_trouble(*state_.spec.map->space, *given->pose_W) : std::nullopt;
+  }
   const auto* add = std::get_if<algo::AddGoal>(&request);
   const auto* asked = add != nullptr ? &add->goal : std::get_if<algo::SetGoal>(&request);
   if (const auto* list = std::get_if<algo::SetGoals>(&request)) {

@@ -139,8 +139,8 @@ class Session {
   /// Everything in the world: the obstacles, then the other robots as obstacles.
   std::vector<algo::Obstacle> obstacles() const;
   db::RunId run_id() const { return live_ ? live_->id() : 0; }
-  /// A known problem of a goal, as a sentence. Nothing for other requests, or when there is no time
-  /// to check.
+  /// A known problem of a goal or of a pose on the map, as a sentence. Nothing for other requests,
+  /// or when there is no time to check.
   std::optional<std::string> trouble_with(const algo::Request& request);
   /// True if there is time to check a goal: among thousands of obstacles a check takes
   /// milliseconds, and this thread carries Stop.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include "tests/temporary_folder.hpp"
@@ -35,8 +36,10 @@ inline sim::Scenario poor_wheels_in_a_room() {
   return server::scenario_from_json(document);
 }
 
-/// Free cells and walls of the room as a map file would show them: walls are filled.
-inline std::shared_ptr<const server::KnownMap> map_of(const sim::Scenario& scenario) {
+/// Free cells and walls of the room as a map file would show them: walls are filled. Writes it to
+/// `folder` too.
+inline std::shared_ptr<const server::KnownMap> map_of(const sim::Scenario& scenario,
+                                                      const std::filesystem::path& folder) {
   algo::OccupancyMap cells(0.05);
   for (int i = -20; i < 340; ++i) {
     for (int j = -20; j < 200; ++j) {
@@ -49,9 +52,12 @@ inline std::shared_ptr<const server::KnownMap> map_of(const sim::Scenario& scena
       }
     }
   }
+  server::write_map(cells, folder / "room.yaml");
+  return server::known_map(folder / "room.yaml");
+}
+inline std::shared_ptr<const server::KnownMap> map_of(const sim::Scenario& scenario) {
   const tests::TemporaryFolder folder;
-  server::write_map(cells, folder.path() / "room.yaml");
-  return server::known_map(folder.path() / "room.yaml");
+  return map_of(scenario, folder.path());
 }
 
 inline server::RunSpec spec_of(const sim::Scenario& scenario, bool with_map, bool lost = false) {

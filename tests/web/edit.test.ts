@@ -141,6 +141,17 @@ test("two fingers pan and zoom, and the first one draws nothing", () => {
   assert.ok(Math.abs(view.scale - 200) < 1e-6, `scale ${view.scale}`);
 });
 
+test("a second finger puts a dragged obstacle back", () => {
+  const { done, gestures } = hands("goal");
+  gestures.down(1, { x: 600, y: 200 }, 0);
+  gestures.move(1, { x: 700, y: 200 });
+  gestures.down(2, { x: 300, y: 300 }, 0);
+  gestures.move(1, { x: 750, y: 200 });
+  gestures.up(1, { x: 750, y: 200 });
+  gestures.up(2, { x: 300, y: 300 });
+  assert.deepEqual(done, ["select obstacle", "moving 4 3 1", "moved 4 2 1"]);
+});
+
 test("zooming keeps the point under the cursor", () => {
   const { view } = hands("goal");
   const before = view.to_world(650, 120);
@@ -311,6 +322,14 @@ test("a removed obstacle comes back with its number, so that older edits reach i
   assert.equal(history.can_redo, null);
 });
 
+test("a load without a way back ends the undo of what was before", async () => {
+  const history = new EditHistory({ send: async () => ({ ok: true, id: 1 }), stands: async () => null, changed: () => undefined });
+  await history.perform(add_edit(new_cylinder(1, 1, 0.3)));
+  assert.ok(history.can_undo);
+  await history.perform({ label: "Change the run", forward: { type: "load", body: {} }, backward: null });
+  assert.equal(history.can_undo, null);
+});
+
 test("undo and redo pressed faster than the server answers run in order", async () => {
   const { standing, history } = world();
   const presses = [history.perform(add_edit(new_cylinder(1, 0, 0.3))), history.undo(), history.redo(), history.undo(),
@@ -394,6 +413,14 @@ test("changes by others are told apart from our own edits", () => {
   assert.equal(change_since(moved, scene), null);
   scene.obstacles = [{ ...ours, pose: { x: 5, y: 0, heading: 0 } }];
   assert.match(change_since(moved, scene)!, /Cylinder 3 has been moved since/);
+  const box = { ...new_box(1, 0, 0.6, 0.4, 0), id: 4 };
+  const { forward } = move_edit(box, box.pose, { x: 2, y: 0, heading: -Math.PI });
+  scene.obstacles = [{ ...box, pose: { x: 2, y: 0, heading: Math.PI } }];
+  assert.equal(change_since(forward, scene), null);
+  scene.obstacles = [{ ...box, pose: { x: 2, y: 0, heading: 1 } }];
+  assert.match(change_since(forward, scene)!, /Box 4 has been moved since/, "turned");
+  const added: Step = { type: "add_obstacle", obstacle: { ...obstacle_to_json({ ...box, pose: { x: 2, y: 0, heading: 0 } }), id: 4 } };
+  assert.match(change_since(added, scene)!, /Box 4 has been changed since/, "turned");
   scene.obstacles = [];
   assert.match(change_since(moved, scene)!, /removed since/);
   const list = { goals: [{ x: 1, y: 2, heading: null }], next: 0, loop: false };

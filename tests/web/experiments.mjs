@@ -94,7 +94,7 @@ test("runs are filtered and sorted, and one is made again and opens", { timeout:
   await p.get("runs-controller").selectOption("go_to_goal");
   await until("of one controller", 10, rows, (list) => list.length === 10 && list.every((row) => row.includes("go_to_goal")));
   await p.get("sort-time_s").click();
-  const { items } = await json(server.base, `/experiments/${id}/runs?controller=go_to_goal&sort=-time_s&limit=1`);
+  const { items } = await json(server.base, `/experiments/${id}/runs?controller=go_to_goal&sort=-time_s&limit=2`);
   await until("the slowest first", 10, rows, ([row]) => row?.startsWith(String(items[0].run)));
   await p.get("outcome-collided").click();
   await p.page.getByText("No finished run of this kind").waitFor();
@@ -105,6 +105,13 @@ test("runs are filtered and sorted, and one is made again and opens", { timeout:
   assert.equal(run.seed, items[0].seed);
   assert.equal(run.outcome, items[0].outcome);
   assert.ok(Math.abs(run.metrics.time - items[0].figures.time_s) < 1e-6, JSON.stringify(run.metrics));
+
+  // Who has left the experiment meanwhile stays there.
+  await p.page.goBack();
+  await p.get(`replay-${items[1].run}`).click();
+  await p.get("nav-drive").click();
+  await p.page.getByText(/^Run \d+ is made\. It stands in Runs\.$/).waitFor();
+  assert.match(p.page.url(), /#\/drive$/);
   await p.close();
 });
 

@@ -11,6 +11,7 @@ const kSizes = {
   desktop: { width: 1440, height: 900 }, zoomed: { width: 720, height: 450 }, upright: { width: 390, height: 844 },
   sideways: { width: 844, height: 390 }, small: { width: 320, height: 640 },
 };
+const kNotebooks = { notebook: { width: 1280, height: 800 }, narrow: { width: 1000, height: 700 } };
 const kTouch = ["upright", "sideways", "small"];
 const kPhones = ["upright", "small"]; // with tabs below, and a sheet
 
@@ -23,12 +24,12 @@ after(() => browser?.close());
 const control = (base, body) => json(base, "/session/control", { method: "POST", body: JSON.stringify(body) });
 
 /** A page of each size on one server; `act` gets it with the size's name. */
-async function at_each_size(options, act, sizes = Object.keys(kSizes)) {
+async function at_each_size(options, act, names = Object.keys(kSizes), sizes = kSizes) {
   const place = scratch();
   const server = await serve({ database: place.database, ...options });
   try {
-    for (const name of sizes) {
-      const p = await open(browser, server.base, { size: kSizes[name], touch: kTouch.includes(name), theme: options.theme });
+    for (const name of names) {
+      const p = await open(browser, server.base, { size: sizes[name], touch: kTouch.includes(name), theme: options.theme });
       await act(p, name, server);
       await p.close();
     }
@@ -337,6 +338,21 @@ test("twelve and more tools are each within reach, 44 px large", { timeout: 120_
     }
     await shot(p, size, "many-tools");
   }));
+
+test("a small notebook: no note lies on a tool, with the layers and without", { timeout: 120_000 }, () =>
+  at_each_size({ scenario: "demo" }, async (p, name) => {
+    await p.get("steps").waitFor();
+    for (let k = 0; k < 2; ++k) {
+      const covered = await p.page.locator(".tools button").evaluateAll((all) => all.filter((e) => {
+        e.scrollIntoView({ block: "nearest" });
+        const { x, y, width, height } = e.getBoundingClientRect();
+        return !document.elementFromPoint(x + width / 2, y + height / 2)?.closest(".tools");
+      }).map((e) => e.title));
+      assert.deepEqual(covered, [], `${name}, ${await p.get("layers").getAttribute("aria-expanded")}`);
+      await p.shot(`layout-${name}-steps-${k}`);
+      await p.page.keyboard.press("l");
+    }
+  }, Object.keys(kNotebooks), kNotebooks));
 
 test("what a finger presses is 44 px large", { timeout: 120_000 }, () =>
   at_each_size({ scenario: "demo" }, async (p, size) => {

@@ -130,3 +130,52 @@ test("the keys give a pose at the crosshair, on a small screen too", { timeout: 
   await p.shot("map-light");
   await p.close();
 });
+
+test("a pose off the map is told; a run on the served map is driven again; a run starts with a world that is there", { timeout: 240_000 }, async () => {
+  await reset();
+  const p = await open(browser, server.base);
+  await p.get("tool-pose").click();
+  await p.get("pose-x").fill("50");
+  await p.get("pose-set").click();
+  await p.page.getByText("The map shows nothing within 2 m of this pose").waitFor();
+  assert.equal(await p.get("tool-pose").getAttribute("aria-pressed"), "true", "the next press gives another");
+
+  const { run } = await session();
+  await p.page.goto(`${server.base}/#/runs/${run.id}`);
+  await p.get("drive-again").selectOption("dwa");
+  await until("both are compared", 60, () => p.page.url(), (url) => /with=\d+/.test(url));
+  await p.get("start-run").click();
+  assert.equal(await p.get("start-scenario").inputValue(), (await json(server.base, "/scenarios")).items[0].name, "the room is in no list");
+  await p.page.keyboard.press("Escape");
+
+  await p.get("nav-drive").click();
+  await p.load("case1");
+  await p.page.keyboard.press("Control+z");
+  await until("the room and its map are back", 20, session, (s) => s.scenario.name === "room" && s.map === "room.yaml");
+  await p.close();
+});
+
+test("a map that comes late is not drawn in the world that was loaded meanwhile", { timeout: 120_000 }, async () => {
+  const p = await open(browser, server.base);
+  if ((await p.get("layers").getAttribute("aria-expanded")) !== "true") await p.get("layers").click();
+  const layer = p.page.getByRole("switch", { name: "Known map" }).or(p.page.getByLabel("Known map")).first();
+  await layer.waitFor();
+  let asked = 0, sent = 0;
+  await p.page.route("**/session/map", async (route) => {
+    ++asked;
+    const response = await route.fetch();
+    await p.page.waitForTimeout(4000);
+    await route.fulfill({ response });
+    ++sent;
+  });
+  await reset();
+  await until("the map of the new run is asked for", 10, () => asked);
+  await p.load("case1");
+  await layer.waitFor({ state: "detached" });
+  await until("it comes", 10, () => sent);
+  await p.page.waitForTimeout(500);
+  assert.equal(await layer.count(), 0);
+  await p.page.keyboard.press("Control+z");
+  await layer.waitFor();
+  await p.close();
+});

@@ -3,16 +3,19 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { read_worlds } from "../../web/src/edit/world_file";
+import { read_pgm, world_of_map } from "../../web/src/edit/map_file";
+import { read_map_info } from "../../web/src/edit/map_yaml";
+import { text_of } from "../../web/src/edit/world_file";
 
 /** Description, picture, and words of the refusal; none: it shows the room of the first one. */
 type Line = [yaml: string, picture: string, says: string];
 
 const folder = join(process.env.TAUTLINE_TESTS!, "maps");
 const table = JSON.parse(readFileSync(join(folder, "table.json"), "utf8")) as Line[];
-const given = (name: string) => ({ name, bytes: readFileSync(join(folder, name)) });
+const read = (name: string) => readFileSync(join(folder, name));
 const world_of = ([yaml, picture]: Line) => {
-  const [{ start, obstacles }] = read_worlds([given(yaml), given(picture)]);
+  const info = read_map_info(text_of({ name: yaml, bytes: read(yaml) }), yaml);
+  const { start, obstacles } = world_of_map(read_pgm(read(picture), picture), info, "map");
   return { start, obstacles };
 };
 

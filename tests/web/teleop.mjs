@@ -302,9 +302,12 @@ test("by touch on a phone, upright and sideways; a lost link is not resumed", { 
     await until("on its way", 10, session, (s) => s.command.v > 0.05);
     await p.shot(`teleop-phone-${name}`);
     await p.context.setOffline(true);
+    await until("it no longer says that the robot follows", 10, () => p.get("teleop-reason").textContent(), (w) => /^The robot is not heard/.test(w));
+    await p.shot(`teleop-phone-${name}-lost`);
     await touch("touchEnd");
     await p.context.setOffline(false);
     await until("at rest", 10, session, rests);
+    await until("it is heard again", 20, () => p.get("teleop-reason").textContent(), (w) => !/not heard/.test(w));
     assert.deepEqual(await p.accessibility(), []);
     await p.context.close();
   }

@@ -2,7 +2,7 @@
 // that was built is lost.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { readFileSync, writeFileSync } from "node:fs";
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { desktop, launch, open, phone } from "./page.mjs";
@@ -12,9 +12,11 @@ let browser;
 let server;
 let store;
 
+const robots = () => join(store.folder, "robots"); // people's own
 before(async () => {
   store = scratch();
-  server = await serve({ database: store.database, scenario: "case1", more: ["--scenarios", join(store.folder, "worlds")] });
+  mkdirSync(robots());
+  server = await serve({ database: store.database, scenario: "case1", more: ["--scenarios", join(store.folder, "worlds"), "--robots", robots()] });
   browser = await launch();
 });
 after(async () => {
@@ -267,6 +269,22 @@ test("another controller, filter, robot and physics keep the world; a reset is t
   await p.close();
 });
 
+test("one's own robot is chosen; once its file is broken, the reason stands there once, and the robot drives on", { timeout: 120_000 }, async () => {
+  const file = join(robots(), "carrier.json");
+  writeFileSync(file, JSON.stringify({ name: "carrier", title: "Carrier", hull: { length: 0.8, width: 0.6 }, mass: 80, track: 0.5, wheel_radius: 0.1, limits: { speed: 0.8, turn: 1.2 }, lasers: [{ resolution_deg: 0.5 }] }));
+  const p = await fresh();
+  await p.get("robot").selectOption("carrier");
+  await until("the carrier", 10, session, (s) => s.robot.name === "carrier");
+  writeFileSync(file, "{ broken");
+  await p.page.reload();
+  await p.page.getByText(/^carrier\.json: bad JSON/).first().waitFor();
+  assert.equal(await p.page.getByText(/^carrier\.json: bad JSON/).count(), 1);
+  await p.get("controller").selectOption("dwa");
+  await until("its world with another controller", 10, session, (s) => s.controller === "dwa" && s.robot.name === "carrier");
+  rmSync(file);
+  await p.close();
+});
+
 test("a refused drag goes back; one person's undo leaves what another has changed", { timeout: 120_000 }, async () => {
   const a = await fresh();
   await json(server.base, "/session/control", { method: "POST", body: '{"action":"pause"}' });
@@ -280,6 +298,21 @@ test("a refused drag goes back; one person's undo leaves what another has change
   const robot = (await session()).pose;
   await a.drag(await a.pixels(3, 1), await a.pixels(robot.x, robot.y));
   await until("back", 5, obstacles, ([o]) => near(o.x, 3, 0.15));
+  // Escape puts it back in the midst of a drag. There is nothing to undo about that.
+  const last = await a.get("undo").getAttribute("title");
+  const [here, there] = [await a.pixels(3, 1), await a.pixels(4, 2)];
+  await a.page.mouse.move(here.x, here.y);
+  await a.page.mouse.down();
+  await a.page.mouse.move(there.x, there.y);
+  await until("on its way", 5, obstacles, ([o]) => o.y > 1.5);
+  await a.page.keyboard.press("Escape");
+  await a.page.mouse.up();
+  await until("put back", 5, obstacles, ([o]) => near(o.x, 3, 0.15) && near(o.y, 1, 0.15));
+  await a.page.keyboard.press("Control+z");
+  await until("the drag before it is undone", 5, obstacles, ([o]) => near(o.x, 2, 0.15));
+  await a.page.keyboard.press("Control+Shift+z");
+  await until("and done again", 5, obstacles, ([o]) => near(o.x, 3, 0.15));
+  assert.equal(await a.get("undo").getAttribute("title"), last);
   await json(server.base, "/session/obstacles/1", { method: "PUT", body: '{"x":4,"y":-2}' });
   await a.page.waitForTimeout(300);
   await a.get("undo").click();
@@ -324,6 +357,33 @@ test("waypoints are reordered and looped in the list, and sizes are typed", { ti
   await p.get("obstacle-copy").click();
   await until("two", 5, obstacles, (list) => list.length === 2);
   await p.close();
+});
+
+test("what one person saves and imports does not replace another's worlds", { timeout: 120_000 }, async () => {
+  const a = await fresh();
+  const b = await open(browser, server.base);
+  const title = async (name) => (await json(server.base, `/scenarios/${name}`)).title;
+  const world = (title) => ({ name: "mine.json", mimeType: "application/json", buffer: Buffer.from(JSON.stringify({ name: "mine", title, goal: { x: 3, y: 0 } })) });
+  for (const p of [a, b]) await p.get("tab-world").click();
+  await a.get("world-files").setInputFiles([world("Of Ann")]);
+  await until("Ann's import", 10, session, (s) => s.scenario.name === "mine");
+  await b.get("world-files").setInputFiles([world("Of Bob")]);
+  await until("Bob's import has another name", 10, session, (s) => s.scenario.name === "mine_2");
+  assert.equal(await title("mine"), "Of Ann");
+
+  await until("both pages have Bob's world", 10, () => a.get("world-name").inputValue(), (name) => name === "Of Bob");
+  await a.get("world-name").fill("Lab");
+  await a.get("world-save").click();
+  await until("Ann's world is saved", 10, session, (s) => s.scenario.name === "lab");
+  await b.get("world-new").click();
+  await until("a new one", 10, session, (s) => s.scenario.name !== "lab");
+  await b.get("world-name").fill("Lab");
+  await b.get("world-save").click();
+  await b.get("replace-dialog").waitFor();
+  await b.get("replace-yes").click();
+  await until("Bob's world is saved", 10, session, (s) => s.scenario.name === "lab");
+  await a.close();
+  await b.close();
 });
 
 test("worlds are imported and exported, copied, deleted and brought back; bad files say why", { timeout: 120_000 }, async () => {
@@ -455,6 +515,36 @@ test("recorded people are dropped onto the page, walk at their times and are gon
   const kept = await json(server.base, "/scenarios/my_square");
   assert.deepEqual(JSON.parse(readFileSync(made)), kept);
   assert.match(execFileSync(binary, ["run", made, "--seed", "1"], { encoding: "utf8" }), /outcome +reached/);
+});
+
+test("a crowd of 5 MB is driven among from the folder of worlds; too large to be sent, it is refused in words", { timeout: 180_000 }, async () => {
+  const p = await fresh();
+  await p.get("tab-world").click();
+  const lines = Array.from({ length: 60_000 }, (_, i) => `${Math.floor(i / 60)} ${i % 60} ${(i % 97) / 7} ${(i % 89) / 9}`);
+  await p.get("world-files").setInputFiles([{ name: "large.txt", mimeType: "text/plain", buffer: Buffer.from(lines.join("\n")) }]);
+  await p.page.getByText(/^"People of large" is a world of [\d.]+ MB; the page can send 1 MB/).waitFor();
+
+  const walker = (i) => ({
+    id: i, type: "cylinder", x: 20, y: i, radius: 0.25,
+    path: { period: 2000, comes_and_goes: true, keys: Array.from({ length: 1000 }, (_, k) => [k + 0.125, 20.125 + k / 1000, i + 0.125]) },
+  });
+  const crowd = { name: "crowd", title: "Crowd", goal: { x: 5, y: 0 }, obstacles: Array.from({ length: 200 }, (_, i) => walker(i + 1)) };
+  const text = JSON.stringify(crowd);
+  assert.ok(text.length > 4.2e6, `${text.length} bytes`);
+  mkdirSync(join(store.folder, "worlds"), { recursive: true });
+  writeFileSync(join(store.folder, "worlds/crowd.json"), text);
+  await control({ action: "load", scenario: "crowd" });
+  await until("the page is in it", 20, () => p.get("scenario-menu").getAttribute("data-scenario"), (name) => name === "crowd");
+  const [file] = await Promise.all([p.page.waitForEvent("download"), p.get("world-export").selectOption("json")]);
+  assert.equal(JSON.parse(readFileSync(await file.path())).obstacles.length, 200);
+  await p.get("tab-robot").click();
+  await p.get("controller").selectOption("dwa");
+  await until("the controller", 20, session, (s) => s.controller === "dwa" && s.scenario.name === "crowd");
+  await p.get("reset").click();
+  await until("a new run", 20, session, (s) => s.tick < 100);
+  assert.equal(await p.get("link").getAttribute("class").then((c) => /open/.test(c)), true);
+  assert.ok(await p.get("undo").isDisabled(), "the way back would be too large");
+  await p.close();
 });
 
 test("people on a phone come by the dialog", { timeout: 120_000 }, async () => {

@@ -47,14 +47,20 @@ test("a map that cannot be used says which field is wrong", () => {
   assert.throws(() => read_map_info("resolution: 0.05", "m.yaml"), /origin is missing/);
   assert.throws(() => read_map_info("resolution: 0.05\norigin: [0, 0, 1]", "m.yaml"), /turned/);
   assert.throws(() => read_worlds([file("m.pgm", "P5")]), /two files/);
+  const yaml = file("m.yaml", kYaml.replace("a.pgm", "maps/a.pgm"));
+  const picture = "P2\n4 4\n255\n0 0 0 0 254 254 254 254 254 254 254 254 254 254 254 254\n";
+  assert.throws(() => read_worlds([file("b.pgm", picture), yaml]), /^Error: m.yaml: its image is a.pgm, not b.pgm.$/);
+  assert.equal(read_worlds([file("b.pgm", "P5"), file("a.pgm", picture), yaml])[0].name, "a", "of two pictures it takes its own");
 });
 
 test("a file that holds something else says so, in words", () => {
   const read = (text: string) => () => read_worlds([file("a.json", text)]);
   for (const text of ["[]", "[7]", "null", "7"]) assert.throws(read(text), /^Error: a.json holds no world/, text);
   for (const name of ["42", "null", "{}"]) assert.throws(read(`{"name":${name}}`), /a.json: name must be a text/, name);
+  assert.throws(read('{"name":"carrier","hull":{"radius":0.3}}'), /^Error: a.json is a robot, not a world. Put it into the folder/);
   const barn = '{"start":[0,0,0],"goal":[1,1],"obstacles":[]}';
   assert.deepEqual(read_worlds([file("b.json", `{"worlds":[${barn},${barn}]}`)]).map((w) => w.name), ["barn-1", "barn-2"]);
+  assert.deepEqual(read_worlds([file("a.json", "{}"), file("b.json", "{}")]).map((w) => w.name), ["a", "b"], "each of several files");
 });
 
 test("a world drawn as a map and read back stands where it stood", () => {

@@ -1,7 +1,7 @@
 // web/src/app.ts: the state of the page and its actions: one link, one scene, the controls.
 import { createContext } from "preact";
 import { useContext } from "preact/hooks";
-import { Catalog, MapDocument, Page, RequestJson, RobotItem, ScenarioItem, SessionState } from "./contract";
+import { Accepted, Catalog, MapDocument, Page, RequestJson, RobotItem, ScenarioItem, SessionState } from "./contract";
 import type { ArmDesk } from "./arm/desk";
 import { View } from "./draw/view";
 import { Editor } from "./edit/editor";
@@ -192,7 +192,7 @@ export class App {
     return this.attempt(this.link.call<T>(service, body));
   }
 
-  request(request: RequestJson): Promise<unknown> {
+  request(request: RequestJson): Promise<Accepted | null> {
     return this.ask("/request", request);
   }
 
@@ -332,6 +332,8 @@ export class App {
       const camera = cameras.get(session.scenario.name);
       if (camera) this.view.show(camera);
       else this.view.fit();
+      const known = this.ui.value.scenarios.some((s) => s.name === session.scenario.name);
+      if (before && !known) void this.fetch_lists(); // somebody else has just saved it
     }
     if (other_run) {
       this.rewind.forget();
@@ -349,10 +351,10 @@ export class App {
 
   private async fetch_map(name: string | null | undefined): Promise<void> {
     if (!name && !this.scene.map) return;
-    const { bounds_of, show_map } = await import("./draw/known_map");
+    const { show_map } = await import("./draw/known_map");
     const map = name ? await this.attempt(rest.get<MapDocument>(session_path("/map"))) : null;
-    show_map(map);
-    this.scene.map = map && bounds_of(map);
+    if (name !== this.ui.value.session?.map) return; // another world has been loaded meanwhile
+    this.scene.map = show_map(map);
     if (this.view.fitted) this.view.fit();
     this.redraw();
   }

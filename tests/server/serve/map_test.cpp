@@ -79,5 +79,55 @@ TEST_F(MapTest, AResetKeepsTheMapAndAnotherWorldHasNone) {
   EXPECT_THAT(refused.body, testing::HasSubstr("knows no map"));
 }
 
+/// The file of the served map is there as long as the server.
+struct FolderOfMap {
+  tests::TemporaryFolder folder{};
+};
+class ServedMapTest : FolderOfMap, public AppTest {
+ protected:
+  ServedMapTest() : AppTest(spec(folder.path())) {}
+
+ private:
+  static RunSpec spec(const std::filesystem::path& folder) {
+    const sim::Scenario room = map_room::poor_wheels_in_a_room();
+    RunOverrides overrides;
+    overrides.map = map_room::map_of(room, folder);
+    return make_spec(room, overrides);
+  }
+};
+
+TEST_F(ServedMapTest, ADocumentFindsTheServedMapWhereverItIsSent) {
+  const std::string run = std::to_string(get("/session")["run"]["id"].get<std::int64_t>());
+  ASSERT_TRUE(eventually([&] { return ask("GET", "/runs/" + run).status == 200; }));
+  const json world = get("/runs/" + run)["document"]["scenario"];
+  ASSERT_EQ(world["map"], "room.yaml");
+
+  const auto again = ask("POST", "/runs", json({{"scenario", world}, {"repeats", 1}}).dump());
+  ASSERT_EQ(again.status, 202) << again.body;
+  EXPECT_TRUE(comes_to(json::parse(again.body)["runs"][0], "finished"));
+
+  ASSERT_EQ(post("/session/control", {{"action", "load"}, {"scenario", "case1"}}), 200);
+  ASSERT_EQ(post("/session/control", {{"action", "load"}, {"scenario", world}}), 200);
+  EXPECT_EQ(get("/session")["map"], "room.yaml");
+
+  EXPECT_EQ(ask("PUT", "/scenarios/room", world.dump()).status, 200);
+  ASSERT_EQ(post("/session/control", {{"action", "load"}, {"scenario", "room"}}), 200);
+  EXPECT_EQ(get("/session")["map"], "room.yaml");
+}
+
+TEST_F(MapTest, APoseOffTheMapGetsAWarning) {
+  const auto warning = [&](const char* pose) {
+    const auto answer = ask("PUT", "/session/pose", pose);
+    EXPECT_EQ(answer.status, 200) << answer.body;
+    return json::parse(answer.body).value("warning", "");
+  };
+  EXPECT_EQ(warning(R"({"x":500,"y":2,"heading":0})"),
+            "The map shows nothing within 2 m of this pose: give one on the map.");
+  EXPECT_EQ(warning(R"({"x":2,"y":-3,"heading":0})"),
+            "The map shows nothing within 2 m of this pose: give one on the map.");
+  EXPECT_EQ(warning(R"({"x":2,"y":-1,"heading":0})"), "");
+  EXPECT_EQ(warning(R"({"x":2,"y":2,"heading":0})"), "");
+}
+
 }  // namespace
 }  // namespace server

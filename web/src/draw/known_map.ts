@@ -15,13 +15,11 @@ export const kOpacity = 0.7;
 interface Shown { bounds: Bounds; picture: HTMLCanvasElement; wall: string; free: string; map: MapDocument }
 let shown: Shown | null = null;
 
-export function bounds_of(map: MapDocument): Bounds {
-  return { min_x: map.x, min_y: map.y, max_x: map.x + map.columns * map.cell, max_y: map.y + map.rows * map.cell };
-}
-
-/** Draws `map` from now on; null: none. */
-export function show_map(map: MapDocument | null): void {
-  shown = map && { bounds: bounds_of(map), picture: document.createElement("canvas"), wall: "", free: "", map };
+/** Draws `map` from now on; null: none. @return its bounds */
+export function show_map(map: MapDocument | null): Bounds | null {
+  const bounds = map && { min_x: map.x, min_y: map.y, max_x: map.x + map.columns * map.cell, max_y: map.y + map.rows * map.cell };
+  shown = map && { bounds: bounds!, picture: document.createElement("canvas"), wall: "", free: "", map };
+  return bounds;
 }
 
 /** Cells by rows from the top, as a picture has them; unknown ones are clear. */

@@ -3,6 +3,8 @@ import type { App } from "../app";
 import { Accepted, RequestJson, ScenarioDocument } from "../contract";
 import { Point, Pose } from "../geometry";
 import { Goal } from "../link/frame";
+import * as rest from "../link/rest";
+import { session_path } from "../link/session";
 import { Obstacle } from "../obstacle";
 import { kCompareStep, kGoalStep, kObstacleStep } from "../state/first_steps";
 import { Route } from "../state/goals";
@@ -42,7 +44,10 @@ export class Editor {
   /** Sends an edit of the world as it is now, and shows that. */
   async edit(edit: Edit): Promise<Accepted | null> {
     this.app_.go_live();
-    const answer = await this.app_.attempt(this.history.perform(edit));
+    return this.told(await this.app_.attempt(this.history.perform(edit)));
+  }
+  /** Shows the warning of the answer. */
+  private told(answer: Accepted | null): Accepted | null {
     if (answer?.warning) this.app_.toast("warn", answer.warning);
     return answer;
   }
@@ -121,11 +126,11 @@ export class Editor {
       .finally(() => (drag.busy = false));
   }
 
-  /** A refused end goes back to where the drag began. */
+  /** A refused end goes back to where the drag began. One that is put back there needs no undo. */
   private finish_drag(id: number, pose: Pose, from: Pose): Promise<void> {
     return this.history.take(async () => {
       const o = this.app_.scene.obstacles.find((o) => o.id === id);
-      if (await this.app_.request(move_request(id, pose))) return o ? move_edit(o, from, pose) : null;
+      if (await this.app_.request(move_request(id, pose))) return o && pose !== from ? move_edit(o, from, pose) : null;
       this.app_.link.call("/request", move_request(id, from)).catch(() => undefined);
       return null;
     });
@@ -163,7 +168,7 @@ export class Editor {
     if (!s || s.source !== "simulation") return null;
     const begin = robot_pose(this.app_.scene);
     try {
-      const { scenario } = await this.app_.link.call<{ scenario: ScenarioDocument }>("/world");
+      const scenario = await rest.get<ScenarioDocument>(session_path("/scenario")); // no size that cuts the link
       const body = { scenario, seed: s.seed, ...(begin && { begin }) };
       return JSON.stringify(body).length < kMostBytes ? { type: "load", body } : null;
     } catch {
@@ -206,8 +211,8 @@ export class Editor {
   /** Tells the robot where it is on its map; null: anywhere. There is no undo: it looks for its place anew. */
   async set_pose(pose: Pose | null): Promise<void> {
     this.app_.go_live();
-    const answer = await this.app_.request({ type: "set_initial_pose", ...(pose ?? {}) });
-    if (answer && pose) this.app_.pick_tool("pan");
+    const answer = this.told(await this.app_.request({ type: "set_initial_pose", ...(pose ?? {}) }));
+    if (answer && !answer.warning && pose) this.app_.pick_tool("pan");
   }
   set_start(pose: Pose): void {
     if (this.app_.scene.start) void this.edit(start_edit(this.app_.scene.start, pose));

@@ -92,7 +92,8 @@ export class Gestures {
     this.pointers_.set(id, px);
     if (this.pointers_.size === 2) {
       const [a, b] = [...this.pointers_.keys()];
-      this.t_.draft(this.rest()); // the first finger began a pinch, not a drawing
+      this.put_back(); // the first finger began a pinch, neither a drag nor a drawing
+      this.t_.draft(this.rest());
       this.active_ = { kind: "pinch", a, b };
       return;
     }
@@ -150,16 +151,17 @@ export class Gestures {
 
   /** For Escape, another tool or a lost pointer: puts a moved obstacle back. */
   cancel(): void {
-    const active = this.active_;
+    this.put_back();
     this.active_ = null;
     this.pointers_.clear();
     this.measure_ = undefined;
     this.sketch_ = [];
-    if (active?.kind === "move" && active.moved) {
-      this.t_.move(active.id, active.from, active.from, true);
-    }
     this.t_.draft({});
     this.t_.changed();
+  }
+  private put_back(): void {
+    const active = this.active_;
+    if (active?.kind === "move" && active.moved) this.t_.move(active.id, active.from, active.from, true);
   }
 
   private begin(px: Point, shift: boolean): Active | null {

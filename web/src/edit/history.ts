@@ -64,6 +64,7 @@ export class EditHistory {
 
   private record(edit: Edit): void {
     if (edit.backward) this.done_.push({ ...edit, at: Date.now() });
+    else if (edit.forward.type === "load") this.done_ = []; // there is no way back to the world of the older ones
     if (this.done_.length > this.most_) this.done_.shift();
     this.undone_ = [];
     this.t_.changed();

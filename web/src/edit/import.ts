@@ -7,6 +7,7 @@ import { GivenFile, read_worlds, stem, text_of } from "./world_file";
 
 /** The scenario whose robot, scanner, controller and parameters drive among recorded people. */
 const kAmongPeople = "people";
+const kMostBytes = 1 << 20; // of a request to the server
 
 /** Opens the world in `files`. @return the worlds to choose from, if they hold several */
 export async function import_files(app: App, files: FileList): Promise<ScenarioDocument[] | null> {
@@ -22,8 +23,16 @@ export async function import_files(app: App, files: FileList): Promise<ScenarioD
 
 /** Keeps `world` under a name that is not taken, so that an import replaces nothing, and opens it. */
 export async function open_world(app: App, world: ScenarioDocument): Promise<void> {
+  await app.fetch_lists(); // others save worlds too
   const name = free_name(app, world.name);
-  const saved = await app.attempt(rest.put(`/scenarios/${name}`, { ...world, name }));
+  const document = { ...world, name };
+  const size = JSON.stringify(document).length;
+  if (size > kMostBytes) {
+    app.toast("bad", `"${world.title ?? name}" is a world of ${(size / kMostBytes).toFixed(1)} MB; the page can send 1 MB. `
+      + "Put its scenario into the folder of serve --scenarios: tautline crowd makes one of recorded people.");
+    return;
+  }
+  const saved = await app.attempt(rest.put(`/scenarios/${name}`, document));
   if (saved === null) return;
   await app.fetch_lists();
   await app.editor.load({ scenario: name });

@@ -3,7 +3,7 @@
 import { Point } from "../geometry";
 
 /** The fields of a map's YAML file that matter here. */
-export interface MapInfo { resolution: number; origin: Point; negate: boolean; occupied: number; free: number }
+export interface MapInfo { image: string; resolution: number; origin: Point; negate: boolean; occupied: number; free: number }
 
 const kKnown = ["image", "mode", "resolution", "origin", "negate", "occupied_thresh", "free_thresh"];
 const kMostLetters = 10_000;
@@ -31,8 +31,7 @@ export function read_map_info(yaml: string, file: string): MapInfo {
   if (free > occupied) fail("free_thresh must not be above occupied_thresh.");
   const mode = fields.has("mode") ? word("mode") : "trinary";
   if (mode !== "trinary" && mode !== "scale") fail(`mode "${mode}" cannot be read, only trinary and scale.`);
-  word("image");
-  return { resolution, origin, negate, occupied, free };
+  return { image: word("image"), resolution, origin, negate, occupied, free };
 }
 
 type Value = string | string[];

@@ -1,5 +1,6 @@
 // web/src/edit/stands.ts: whether the world is still as an edit of this page left it.
 import { GoalJson } from "../contract";
+import { Pose, wrap_angle } from "../geometry";
 import { Obstacle, ObstacleJson, obstacle_from_json, obstacle_title } from "../obstacle";
 import { SceneState } from "../state/scene";
 import { Step } from "./edits";
@@ -18,7 +19,7 @@ export function change_since(step: Step, scene: SceneState): string | null {
     case "move_obstacle": {
       const now = scene.obstacles.find((o) => o.id === step.id);
       if (!now) return gone(step.id);
-      return near(now.pose.x, step.x) && near(now.pose.y, step.y) ? null : `${obstacle_title(now)} has been moved since.`;
+      return same_pose(now, step) ? null : `${obstacle_title(now)} has been moved since.`;
     }
     case "remove_obstacle":
       return scene.obstacles.some((o) => o.id === step.id) ? "It has been put back since." : null;
@@ -64,10 +65,13 @@ function same_goals(now: GoalJson[], then: GoalJson[]): boolean {
     (g.heading ?? null) === null === ((then[i].heading ?? null) === null) && near(g.heading ?? 0, then[i].heading ?? 0));
 }
 
+function same_pose({ kind, pose }: Obstacle, then: Pose): boolean {
+  return near(pose.x, then.x) && near(pose.y, then.y) && (kind === "cylinder" || near(wrap_angle(pose.heading - then.heading), 0));
+}
+
 /** Where something that moves by itself is now says nothing. */
 function same_obstacle(now: Obstacle, json: ObstacleJson): boolean {
   const then = obstacle_from_json(json);
-  const place = now.path || (near(now.pose.x, then.pose.x) && near(now.pose.y, then.pose.y));
-  return !!place && now.kind === then.kind && near(now.radius, then.radius) && near(now.length, then.length) &&
+  return (now.path || same_pose(now, then.pose)) && now.kind === then.kind && near(now.radius, then.radius) && near(now.length, then.length) &&
     near(now.width, then.width) && near(now.low, then.low) && near(now.height, then.height) && near(now.bottom, then.bottom) && now.points.length === then.points.length && !now.path === !then.path;
 }

@@ -14,15 +14,22 @@ export function name_of(title: string): string {
 /** The worlds in `files`; throws a sentence that names the file and the field. */
 export function read_worlds(files: GivenFile[]): ScenarioDocument[] {
   const of = (ends: RegExp) => files.find((f) => ends.test(f.name));
-  const picture = of(/\.pgm$/i);
+  const pgm = of(/\.pgm$/i);
   const yaml = of(/\.ya?ml$/i);
-  if (picture || yaml) {
-    if (!picture || !yaml) throw new Error("A map is two files: choose the .pgm and the .yaml together.");
+  if (pgm || yaml) {
+    if (!pgm || !yaml) throw new Error("A map is two files: choose the .pgm and the .yaml together.");
     const info = read_map_info(text_of(yaml), yaml.name);
+    const image = info.image.replace(/^.*[\\/]/, "");
+    const picture = files.find((f) => f.name === image);
+    if (!picture) throw new Error(`${yaml.name}: its image is ${image}, not ${pgm.name}.`);
     return [world_of_map(read_pgm(picture.bytes, picture.name), info, stem(picture.name))];
   }
-  const json = of(/\.json$/i);
-  if (!json) throw new Error("Choose a scenario or BARN file (.json), a map (.pgm and .yaml), or one file of recorded people (.txt).");
+  const json = files.filter((f) => /\.json$/i.test(f.name));
+  if (json.length === 0) throw new Error("Choose a scenario or BARN file (.json), a map (.pgm and .yaml), or one file of recorded people (.txt).");
+  return json.flatMap(worlds_in);
+}
+
+function worlds_in(json: GivenFile): ScenarioDocument[] {
   let document: unknown;
   try {
     document = JSON.parse(text_of(json));
@@ -31,6 +38,7 @@ export function read_worlds(files: GivenFile[]): ScenarioDocument[] {
   }
   if (!document || typeof document !== "object" || Array.isArray(document)) throw new Error(`${json.name} holds no world.`);
   if ("worlds" in document) return barn_worlds(document as BarnFile, json.name);
+  if ("hull" in document) throw new Error(`${json.name} is a robot, not a world. Put it into the folder of serve --robots, then reload the page.`);
   const one = document as ScenarioDocument;
   if (one.name !== undefined && typeof one.name !== "string") throw new Error(`${json.name}: name must be a text.`);
   return [{ ...one, name: name_of(one.name ?? stem(json.name)) || "world" }];

@@ -109,10 +109,13 @@ async function copy(app: App, command: string): Promise<void> {
   }
 }
 
-/** Makes the run again and opens it. */
+/** Makes the run again and opens it, unless the person has left the experiment meanwhile. */
 export async function open_again(app: App, id: string, run: number): Promise<void> {
   const made = await app.attempt(make_again(id, run));
-  if (made !== null) app.open_run(made, []);
+  if (made === null) return;
+  const { view, experiment } = app.ui.value;
+  if (view === "experiments" && experiment === id) app.open_run(made, []);
+  else app.toast("info", `Run ${made} is made. It stands in Runs.`);
 }
 
 /** Makes the run again, with its record, and waits until it can be opened. */

@@ -4,6 +4,7 @@ import { JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { use_app, use_ui } from "../app";
 import { may } from "../people";
+import { age_words, news_age } from "../state/age";
 import { SceneState, senses_ground } from "../state/scene";
 import { use_pulse } from "../state/store";
 import { Segments, Slider } from "../ui/controls";
@@ -70,8 +71,12 @@ export function Teleop(): JSX.Element {
 
 /** The sentence of the view: why the robot does not do what the hand wants. */
 function Reason(props: { scene: SceneState; hand: Hand; drives: boolean; stopped: boolean }): JSX.Element {
+  const { link, session } = use_ui("link", "session");
   const { frame } = props.scene;
-  const { what, why } = !props.drives
+  const silence = news_age(props.scene, session, link.phase === "open", performance.now());
+  const { what, why } = silence !== null
+    ? { what: "The robot is not heard", why: `This picture is ${age_words(silence)} old. Your stick may not reach the robot, which then stops by itself.` }
+    : !props.drives
     ? { what: "You only watch", why: "This robot takes no stick, or your role may not drive." }
     : props.stopped ? { what: "Stopped", why: "Release lets the robot drive again, once the stick has been in the middle." }
     : (props.hand.link.round_trip ?? 0) > kTooSlow ? { what: "The link is too slow to drive", why: "Your answer to what you see would come too late; Stop works." }
@@ -79,7 +84,7 @@ function Reason(props: { scene: SceneState; hand: Hand; drives: boolean; stopped
     : frame?.behaviour === "manual" ? driven_words(props.scene)
     : props.hand.strange ? { what: "This gamepad moves nothing", why: "Its buttons have no standard order, so none is known to be Stop. Set it up below." }
     : { what: "Nobody drives by hand", why: "Drag the stick, hold W A S D or the arrows, or hold a bumper of a gamepad." };
-  return <p class="card say" data-testid="teleop-reason"><b role="status">{what}</b> <span>{why}</span></p>;
+  return <p class={`card say ${silence !== null ? "stale all" : ""}`} data-testid="teleop-reason"><b role="status">{what}</b> <span>{why}</span></p>;
 }
 
 function SpeedCap(props: { disabled: boolean }): JSX.Element | null {

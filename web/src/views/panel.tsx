@@ -128,7 +128,7 @@ function RobotPick(props: { session: SessionState }): JSX.Element | null {
   if (robots.length === 0) return null;
   const choices = robots.filter((r) => r.usable).map((r) => ({ name: r.name, label: r.title }));
   const known = choices.some((c) => c.name === name);
-  const help = robots.find((r) => r.name === name)?.description;
+  const help = robots.find((r) => r.name === name && r.usable)?.description;
   return (
     <section>
       <h2>Robot</h2>

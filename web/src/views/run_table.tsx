@@ -1,10 +1,10 @@
 // web/src/views/run_table.tsx: the table of runs: sorted by its heads, selected by its boxes, a batch
 // as one line that opens.
 import { JSX } from "preact";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useRef, useState } from "preact/hooks";
 import { use_app } from "../app";
 import { RunItem, RunPage } from "../contract";
-import * as rest from "../link/rest";
+import { use_fetched } from "../link/fetched";
 import { icons } from "../ui/icons";
 import { driver_word, fixed, kind_words, result_word, titled } from "../words";
 import { Selection, key_of, runs_words } from "./run_actions";
@@ -177,7 +177,8 @@ function Batch(props: LineProps & { opened: boolean; on_toggle: (batch: number) 
   const { run: r, list } = props;
   const group = r.group!;
   const key = key_of(r);
-  const members = use_members(list, props.opened ? r.batch : null);
+  const path = props.opened ? query_of({ ...list.search, batch: r.batch }, kMembers) : null;
+  const members = use_fetched<RunPage>(path, [], path === null ? null : kMembersMs).value?.items ?? []; // the list says what is wrong
   const toggle = () => props.on_toggle(group.first);
   return (
     <>
@@ -215,28 +216,4 @@ function Results(props: { results: Record<string, number> }): JSX.Element {
       })}
     </span>
   );
-}
-
-/** The newest runs of a batch under the search; none while `batch` is null. */
-function use_members(list: RunList, batch: number | null): RunItem[] {
-  const [members, set_members] = useState<RunItem[]>([]);
-  const { text, result, kind, sort, descending } = list.search;
-  useEffect(() => {
-    if (batch === null) {
-      set_members([]);
-      return;
-    }
-    const stop = new AbortController();
-    const fetch = () => rest.get<RunPage>(query_of({ ...list.search, batch }, kMembers), stop.signal)
-      .then((page) => set_members(page.items)).catch(() => undefined); // the list says what is wrong
-    void fetch();
-    const timer = setInterval(() => {
-      if (!document.hidden) void fetch();
-    }, kMembersMs);
-    return () => {
-      stop.abort();
-      clearInterval(timer);
-    };
-  }, [batch, text, result, kind, sort, descending]);
-  return members;
 }

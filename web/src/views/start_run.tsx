@@ -14,7 +14,8 @@ const is_whole = (value: number | null, least: number, most: number): value is n
 export function StartRun(props: { on_close: () => void; on_started: () => void }): JSX.Element {
   const app = use_app();
   const { session, catalog, scenarios } = use_ui("session", "catalog", "scenarios");
-  const [scenario, set_scenario] = useState(session?.scenario.name ?? scenarios[0]?.name ?? "");
+  const known = scenarios.find((s) => s.name === session?.scenario.name) ?? scenarios[0]; // it may be saved nowhere
+  const [scenario, set_scenario] = useState(known?.name ?? "");
   const [controller, set_controller] = useState(session?.controller ?? "modified");
   const [seed, set_seed] = useState<number | null>(1);
   const [repeats, set_repeats] = useState<number | null>(1);

@@ -14,7 +14,7 @@ export function WhichWorld(props: { worlds: ScenarioDocument[]; on_close: () => 
   };
   return (
     <Dialog title="Which world?" name="which-dialog" on_close={on_close}>
-      <p>The file holds {worlds.length} worlds.</p>
+      <p>There are {worlds.length} worlds.</p>
       <Pick label="World" name="which-world" value="" choices={[{ name: "", label: "Choose one" },
         ...worlds.map((w, i) => ({ name: String(i), label: w.title ?? w.name }))]}
         on_pick={(i) => i !== "" && open(worlds[Number(i)])} />

@@ -27,11 +27,16 @@ export function WorldFiles(): JSX.Element {
   useEffect(() => set_typed(null), [scenario.name]);
   const wanted = typed ?? title;
   const name = name_of(wanted);
-  const taken = scenarios.find((s) => s.name === name && name !== scenario.name);
 
-  const save = () => run(async () => {
+  const save = (sure: boolean) => run(async () => {
     set_asking(false); // a refusal stands below the name
     if (name === "") throw new Error("A world needs a name with a letter from a to z or a digit.");
+    await app.fetch_lists(); // others save worlds too
+    const taken = app.ui.value.scenarios.some((s) => s.name === name && name !== scenario.name && !s.builtin);
+    if (taken && !sure) {
+      set_asking(true);
+      return;
+    }
     await rest.post(session_path("/scenario"), { name, title: wanted.trim() });
     set_typed(null);
     await app.fetch_lists();
@@ -42,8 +47,7 @@ export function WorldFiles(): JSX.Element {
       <h2>This world{session!.edited && <small class="quiet" data-testid="edited"> changed, not saved</small>}</h2>
       <form class="save" onSubmit={(e) => {
         e.preventDefault();
-        if (taken && !taken.builtin) set_asking(true);
-        else void save();
+        void save(false);
       }}>
         <input type="text" value={wanted} maxLength={64} aria-label="Name of the world" data-testid="world-name"
           onInput={(e) => set_typed(e.currentTarget.value)} />
@@ -63,7 +67,7 @@ export function WorldFiles(): JSX.Element {
       {asking && <Dialog title={`Replace "${wanted.trim()}"?`} name="replace-dialog" on_close={() => set_asking(false)}>
         <p>There is a world of this name. Saving replaces it.</p>
         <div class="facts-acts">
-          <button class="small primary" data-testid="replace-yes" onClick={() => void save()}>Replace it</button>
+          <button class="small primary" data-testid="replace-yes" onClick={() => void save(true)}>Replace it</button>
           <button class="ghost" onClick={() => set_asking(false)}>Keep it</button>
         </div>
       </Dialog>}
@@ -138,8 +142,8 @@ function Export(): JSX.Element {
   const { session } = use_ui("session");
   const name = session!.scenario.name;
   const scenario = async () => {
-    const answer = await app.attempt(app.link.call<{ scenario: ScenarioDocument }>("/world"));
-    if (answer) download(new Blob([JSON.stringify(answer.scenario, null, 2), "\n"]), `${name}.json`);
+    const world = await app.attempt(rest.get<ScenarioDocument>(session_path("/scenario")));
+    if (world) download(new Blob([JSON.stringify(world, null, 2), "\n"]), `${name}.json`);
   };
   const map = () => {
     try {
