@@ -312,7 +312,7 @@ test("a refused drag goes back; one person's undo leaves what another has change
   await until("the drag before it is undone", 5, obstacles, ([o]) => near(o.x, 2, 0.15));
   await a.page.keyboard.press("Control+Shift+z");
   await until("and done again", 5, obstacles, ([o]) => near(o.x, 3, 0.15));
-  assert.equal(await a.get("undo").getAttribute("title"), last);
+  await until("it is the last edit again", 5, () => a.get("undo").getAttribute("title"), (title) => title === last);
   await json(server.base, "/session/obstacles/1", { method: "PUT", body: '{"x":4,"y":-2}' });
   await a.page.waitForTimeout(300);
   await a.get("undo").click();

@@ -1,6 +1,6 @@
 // web/src/edit/stands.ts: whether the world is still as an edit of this page left it.
 import { GoalJson } from "../contract";
-import { Pose, wrap_angle } from "../geometry";
+import { Point, Pose, distance, wrap_angle } from "../geometry";
 import { Obstacle, ObstacleJson, obstacle_from_json, obstacle_title } from "../obstacle";
 import { SceneState } from "../state/scene";
 import { Step } from "./edits";
@@ -19,7 +19,7 @@ export function change_since(step: Step, scene: SceneState): string | null {
     case "move_obstacle": {
       const now = scene.obstacles.find((o) => o.id === step.id);
       if (!now) return gone(step.id);
-      return same_pose(now, step) ? null : `${obstacle_title(now)} has been moved since.`;
+      return same_pose(now.pose, step) ? null : `${obstacle_title(now)} has been moved since.`;
     }
     case "remove_obstacle":
       return scene.obstacles.some((o) => o.id === step.id) ? "It has been put back since." : null;
@@ -33,7 +33,7 @@ export function change_since(step: Step, scene: SceneState): string | null {
     case "carry":
       return alike(scene.arm_asked, step) ? null : "The arm has got another goal since.";
     case "start":
-      return scene.start && near(scene.start.x, step.pose.x) && near(scene.start.y, step.pose.y)
+      return scene.start && same_place(scene.start, step.pose)
         ? null : "The start has been moved since.";
     default:
       return null;
@@ -61,17 +61,21 @@ function near(a: number, b: number): boolean {
 }
 
 function same_goals(now: GoalJson[], then: GoalJson[]): boolean {
-  return now.length === then.length && now.every((g, i) => near(g.x, then[i].x) && near(g.y, then[i].y) &&
+  return now.length === then.length && now.every((g, i) => same_place(g, then[i]) &&
     (g.heading ?? null) === null === ((then[i].heading ?? null) === null) && near(g.heading ?? 0, then[i].heading ?? 0));
 }
 
-function same_pose({ kind, pose }: Obstacle, then: Pose): boolean {
-  return near(pose.x, then.x) && near(pose.y, then.y) && (kind === "cylinder" || near(wrap_angle(pose.heading - then.heading), 0));
+function same_pose(now: Pose, then: Pose): boolean {
+  return same_place(now, then) && near(wrap_angle(now.heading - then.heading), 0);
+}
+
+function same_place(now: Point, then: Point): boolean {
+  return distance(now, then) < kSame;
 }
 
 /** Where something that moves by itself is now says nothing. */
 function same_obstacle(now: Obstacle, json: ObstacleJson): boolean {
   const then = obstacle_from_json(json);
-  return (now.path || same_pose(now, then.pose)) && now.kind === then.kind && near(now.radius, then.radius) && near(now.length, then.length) &&
+  return (now.path || same_pose(now.pose, then.pose)) && now.kind === then.kind && near(now.radius, then.radius) && near(now.length, then.length) &&
     near(now.width, then.width) && near(now.low, then.low) && near(now.height, then.height) && near(now.bottom, then.bottom) && now.points.length === then.points.length && !now.path === !then.path;
 }

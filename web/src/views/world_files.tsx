@@ -1,6 +1,6 @@
 // web/src/views/world_files.tsx: saves the world, opens, copies and deletes one's own, imports and exports.
 import { JSX } from "preact";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useRef, useState } from "preact/hooks";
 import { use_app, use_ui } from "../app";
 import { ScenarioDocument } from "../contract";
 import { empty_world } from "../edit/empty_world";
@@ -20,12 +20,11 @@ export function WorldFiles(): JSX.Element {
   const scenario = session!.scenario;
   const own = scenarios.some((s) => s.name === scenario.name && !s.builtin);
   const title = own ? scenario.title ?? scenario.name : `My ${(scenario.title ?? scenario.name).toLowerCase()}`;
-  const [typed, set_typed] = useState<string | null>(null);
+  const [typed, set_typed] = useState<{ of: string; name: string } | null>(null);
   const [problem, run] = use_problem();
   const [opening, set_opening] = useState(false);
   const [asking, set_asking] = useState(false);
-  useEffect(() => set_typed(null), [scenario.name]);
-  const wanted = typed ?? title;
+  const wanted = typed?.of === scenario.name ? typed.name : title; // a name that was typed for another world is forgotten
   const name = name_of(wanted);
 
   const save = (sure: boolean) => run(async () => {
@@ -50,7 +49,7 @@ export function WorldFiles(): JSX.Element {
         void save(false);
       }}>
         <input type="text" value={wanted} maxLength={64} aria-label="Name of the world" data-testid="world-name"
-          onInput={(e) => set_typed(e.currentTarget.value)} />
+          onInput={(e) => set_typed({ of: scenario.name, name: e.currentTarget.value })} />
         <button type="submit" class="small primary" data-testid="world-save">{own && name === scenario.name ? "Save" : "Save as"}</button>
       </form>
       <Problem text={problem} name="world-problem" />
