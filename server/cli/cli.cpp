@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "drivers/lms200_machine.hpp"
 #include "server/run/arm_json.hpp"
 #include "server/run/json_reader.hpp"
 #include "server/run/map_robot.hpp"
@@ -68,6 +69,17 @@ RunOverrides RunFlags::resolved(const RobotLibrary& robots) const {
   if (!map.empty()) out.map = known_map(map);
   out.parameters = parameters_set(settings);
   return out;
+}
+
+Option add_password_option(Command command, std::string& password) {
+  return command
+      .add_option("--password", password, "Password of its configuration, if it was changed")
+      .check(
+          [](const std::string& text) -> std::string {
+            return drivers::lms200::good_password(text) ? "" : "A password has 8 characters.";
+          },
+          "8 CHARACTERS")
+      .show_default();
 }
 
 Option add_set_option(Command command, std::vector<std::string>& settings) {

@@ -52,6 +52,9 @@ RobotLibrary own_robots();
 /// --robot-model, for RobotLibrary::load_file_or_name().
 Option add_robot_option(Command command, std::string& robot);
 
+/// --password of a scanner.
+Option add_password_option(Command command, std::string& password);
+
 /// --set, for parameters_set().
 Option add_set_option(Command command, std::vector<std::string>& settings);
 /// Values by name. Throws DocumentError for a setting that is not NAME=VALUE.

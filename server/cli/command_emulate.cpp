@@ -192,7 +192,7 @@ void add_scanner_flags(Command command, EmulateCommand& options) {
                   "switch and power-on")
       .range(0.0, 60.0);
   command.add_option("--refuse", scanner.refusals, "Number of telegrams it answers with NAK");
-  command.add_option("--password", scanner.password, "Password of its configuration");
+  add_password_option(command, scanner.password);
   command.add_flag("--rs232", options.rs232, "The plug's jumper is set to RS-232: no 500000");
   command.add_flag("--interlaced",
                    options.emulation.scanner.interlaced,

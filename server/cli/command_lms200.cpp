@@ -135,15 +135,7 @@ void add_common(Command command, Lms200Command& options) {
       .one_of({100U, 180U});
   command.add_option("--range", options.range, "Metres: 8, 16, 32 or 80 (in centimetres)")
       .one_of({8U, 16U, 32U, 80U});
-  command
-      .add_option(
-          "--password", options.password, "Password of its configuration, if it was changed")
-      .check(
-          [](const std::string& text) -> std::string {
-            return drivers::lms200::good_password(text) ? "" : "A password has 8 characters.";
-          },
-          "8 CHARACTERS")
-      .show_default();
+  add_password_option(command, options.password);
   command.add_option("--patience", options.patience, "Seconds to search for the scanner")
       .range(1.0, 300.0)
       .show_default();

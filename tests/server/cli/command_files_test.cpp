@@ -175,6 +175,12 @@ TEST_F(CommandFilesTest, ASeedThatTheStoreCannotKeepIsRefused) {
   EXPECT_FALSE(std::filesystem::exists(path("runs.db")));
 }
 
+TEST_F(CommandFilesTest, APasswordThatNoScannerHasIsRefused) {
+  EXPECT_THAT(
+      refusal(add_emulate_command, {"emulate", "robot", "--links", path("l"), "--password", "abc"}),
+      HasSubstr("8 characters"));
+}
+
 TEST_F(CommandFilesTest, ACommandThatSelectsNothingIsRefused) {
   const auto buildings = [](std::vector<std::string> options) {
     options.insert(options.begin(), "buildings");
