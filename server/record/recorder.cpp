@@ -177,7 +177,8 @@ void Recorder::work_once(bool last) {
   take_arrivals();
   take_frames();
   end_closed();
-  if (Clock::now() >= commit_due_ || uncommitted_ > most_uncommitted_) {
+  if (Clock::now() >= round_due_ || uncommitted_ > most_uncommitted_) {
+    round_due_ = Clock::now() + options_.commit_interval;
     run_later();
     look_at_file();
     commit();
@@ -185,7 +186,7 @@ void Recorder::work_once(bool last) {
     publish();
   }
   if (last) return;
-  bell_->wait_until(channels_.empty() ? commit_due_ : std::min(Clock::now() + kNap, commit_due_));
+  bell_->wait_until(channels_.empty() ? round_due_ : std::min(Clock::now() + kNap, round_due_));
 }
 
 void Recorder::run_jobs() {

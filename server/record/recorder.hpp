@@ -242,6 +242,7 @@ class Recorder {
   std::int64_t room_left_ = std::numeric_limits<std::int64_t>::min();  // [bytes] at the last check
   std::uint64_t uncommitted_ = 0;  // [bytes] of unpacked frames since the last commit
   Clock::time_point commit_due_{};
+  Clock::time_point round_due_{};  // a commit, then a look at the room
   Clock::time_point set_aside_{};
 
   std::atomic<bool> takes_more_{false};

@@ -204,6 +204,17 @@ TEST_F(RecorderRoomTest, AStoreFullOfFinishedRunsStopsRecordingAndSaysSo) {
   EXPECT_EQ(run.ticks, 100u);
 }
 
+/// Each flush commits. The time of the next look at the room must not move with it.
+TEST_F(RecorderRoomTest, ManyShortRunsDoNotPostponeTheLookAtTheRoom) {
+  constexpr std::uint64_t kLimit = 4'000'000;
+  RecorderOptions options = limited(kLimit);
+  options.commit_interval = std::chrono::milliseconds(100);  // longer than a run with its flush
+  Recorder recorder(path, std::move(options));
+  for (int i = 0; i < 4000 && recorder.takes_more(); ++i) finished(recorder, 20);
+  EXPECT_FALSE(recorder.takes_more());
+  EXPECT_LT(used(recorder), 2 * kLimit);
+}
+
 TEST_F(RecorderRoomTest, ARunToBeKeptWholeWaitsForRoom) {
   constexpr std::uint64_t kLimit = 1'500'000;
   RecorderOptions options = limited(kLimit);
