@@ -316,7 +316,7 @@ TEST_F(ExperimentsTest, OnesThatCannotWriteStillEndAreReadAndGo) {
   EXPECT_EQ(report.problem, "runs.csv: cannot be written");
   experiments.cancel(id);
   EXPECT_EQ(forever->info().state, ExperimentState::Cancelled);
-  EXPECT_EQ(forever->info().problem, "state.json.new: cannot be written");
+  EXPECT_EQ(forever->info().problem, "state.json.new: cannot be written: Is a directory");
   ASSERT_TRUE(comes([&] { return !forever->at_work(); }));
   experiments.resume(id);
   ASSERT_TRUE(comes([&] { return forever->at_work(); }));
